@@ -2,8 +2,8 @@
 //! on the same road users in the same steps, what one would build without it: parry2d's tree with its intersection test
 //! per pair, and all pairs, by that test and by the cheapest there is. `cargo bench --bench detector`.
 //!
-//! Straight paths: without SUMO there are no routes. `-- --scenes FOLDER` also writes the scenes of up to 10⁴ road
-//! users, for benches/commonroad.py.
+//! Straight paths: routes need SUMO. `-- --scenes FOLDER` also writes the scenes of up to 10⁴ road users, for
+//! benches/commonroad.py.
 
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may")]
 

@@ -1,4 +1,4 @@
-//! What the method refuses.
+//! Errors of the method.
 
 use crate::util::units::Radian;
 

@@ -8,8 +8,7 @@ use pyo3::prelude::*;
 
 use crate::conflict::Conflict;
 
-/// A conflict that is open, or waits for its PET, as it was in the last step that met the log's condition. The PET so far is
-/// that of now.
+/// A conflict that is open or waits for its PET, as of the last step that met the log's condition. Its PET is the current one.
 ///
 /// Args:
 ///     artefact: why it is none of traffic's, as in the log; None for the rest, and always unless `artefacts=True`.

@@ -33,7 +33,7 @@ const AUTO: &str = "closecall-out";
 ///         gets frames.
 ///     net: the net file; by default the simulation's own.
 ///     out: a folder for the log (conflicts.csv, run.json; series.csv with `log_series=True`, series.parquet with
-///         `log_series="parquet"`); by default no log is written. An earlier log is kept in its folder `earlier`;
+///         `log_series="parquet"`); by default no log is written. An earlier log is moved to `earlier/` within it;
 ///         "auto" makes a new folder closecall-out-N.
 ///     force: whether to replace an earlier log instead of keeping it.
 ///     keep: how many closed conflicts stay in memory for `conflicts`, the latest; by default all, or 10,000 with `out`.
@@ -133,8 +133,8 @@ impl Checker {
     ///         not in the scene.
     ///
     /// Returns:
-    ///     Whether the listener wants the next step too: a simulation drops one that is closed. If another simulation or
-    ///     state was loaded meanwhile, the checker closes itself with a warning.
+    ///     Whether the listener wants the next step too: a simulation drops closed listeners. If another simulation or state
+    ///     was loaded meanwhile, the checker closes itself with a warning.
     ///
     /// Raises:
     ///     ValueError: a column is missing, unknown, has another length or no real numbers, an id occurs twice, the time is

@@ -1,4 +1,4 @@
-//! A data frame of trajectories as a CSV file, which is then read as any recording is. Of its columns only those that are read are
+//! A data frame of trajectories as a CSV file, which is then read like any recording. Only the columns that are read are
 //! written.
 
 use std::io::{BufWriter, Write};
@@ -43,7 +43,7 @@ pub fn written(py: Python, data: &Bound<PyAny>, tracks: &TrackOptions) -> PyResu
     Ok(file)
 }
 
-/// Writes the columns that are read. Those of nulls alone, which Polars hands over otherwise than Arrow says, are not asked for.
+/// Writes the columns that are read. Columns of only nulls are skipped: Polars does not export them as Arrow specifies.
 fn write(data: &Bound<PyAny>, stream: Bound<PyAny>, file: &NamedTempFile, tracks: &TrackOptions) -> PyResult<()> {
     let mut reader = reader_of(&stream)?;
     let schema = reader.schema();

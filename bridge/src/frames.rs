@@ -1,6 +1,6 @@
 //! Plain frames from Python: arrays of states, for trajectories that do not come from SUMO.
 //!
-//! A frame is checked as a whole before the run takes any of it, so that one that is refused changes nothing.
+//! A frame is checked as a whole before the run takes any of it, so a refused frame changes nothing.
 
 use closecall::util::limits::{self, Limit};
 use closecall::{Category, Options, Point, Profile, ProfileIndex, State, SumoType, UserIndex};

@@ -1,4 +1,4 @@
-//! Arrays of numbers from Python: what has no real number for each value is refused, instead of being made into one.
+//! Arrays of numbers from Python: anything but real numbers is refused, not converted.
 
 use numpy::{PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods, ndarray::ArrayD};
 use pyo3::exceptions::PyValueError;

@@ -31,10 +31,9 @@ const ASKED: Duration = Duration::from_millis(50);
 ///         Polars or pandas, a table of PyArrow.
 ///     columns: which columns are what, in which unit: {"id": "trackId", "time": "t[ms]", "x": "xCenter", ...}, or the text of the
 ///         command line's --columns (docs/formats.md).
-///     format: the format of a recording, as on the command line; by default as its first bytes and columns tell.
-///     frame_rate: frames per second, where the time is a number of frames.
-///     origin: what x and y are: "centre" or "front".
-///     smooth: the standard deviation in m of the noise in places, which are smoothed then; True is 0.1. By default nothing is
+///     format: the format of a recording, as on the command line; by default detected from the file. frame_rate: frames per
+///     second, where the time is a number of frames. origin: what x and y are: "centre" or "front". smooth: the standard
+///     deviation in m of the noise in places, which are smoothed then; True is 0.1. By default nothing is
 ///         smoothed.
 ///     net: the net file; without one, paths follow no lanes.
 ///     route_files: route and additional files that define the types and routes of SUMO's recordings.

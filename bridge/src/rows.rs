@@ -139,7 +139,7 @@ fn sorts(column: &Bound<PyAny>) -> PyResult<Vec<Sort>> {
     texts(column)?.iter().map(sort).collect()
 }
 
-/// The names of the columns, if the mapping tells them; one that is not known is refused, as it is most likely misspelt.
+/// The names of the columns, if the mapping has them; an unknown name is refused, as it is most likely misspelt.
 fn names(states: &Bound<PyAny>) -> PyResult<Option<Vec<PyBackedStr>>> {
     // A mapping and a table of pandas have keys, a table of Polars has columns, an array of NumPy's structures neither.
     let names = match (states.getattr_opt("keys")?, states.getattr_opt("columns")?, states.getattr_opt("dtype")?) {

@@ -26,10 +26,10 @@ impl Brakes {
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum MuModel {
-    /// The room at the narrowest moment until both stand.
+    /// The closest approach while braking.
     #[default]
     Minimal,
-    /// The room when both stand.
+    /// The room once both have stopped.
     #[cfg_attr(feature = "clap", value(alias = "at_rest"))]
     AtRest,
     /// Eq. 19 and 21 as printed: always a minus sign, no floor.

@@ -116,8 +116,8 @@ impl LateBraking {
         braked_for >= t3 / 2.0 && still_moves && travelled <= distance
     }
 
-    /// The longest wait, in s, with which it and one that comes towards it stop within some room, if both wait as long.
-    /// `share` is the part of the other's way that counts.
+    /// The longest wait, in s, with which it and an oncoming vehicle stop within some room, if both wait as long. `share` is
+    /// the part of the other's distance that counts.
     pub fn longest_wait_towards(&self, other: &Self, share: f64, room: Metre) -> Second {
         let both = [self.relative(0.0, 0.0), other.relative(0.0, 0.0)];
         let travelled = |wait| both[0].travelled(wait) + share * both[1].travelled(wait);
@@ -146,7 +146,7 @@ impl LateBraking {
         (self.speed - self.present * time / 2.0) * time
     }
 
-    /// Its motion relative to one that has this speed and deceleration.
+    /// Its motion relative to a vehicle with this speed and deceleration.
     fn relative(&self, speed: MetrePerSecond, deceleration: MetrePerSecondSquared) -> Closing {
         Closing {
             speed: self.speed - speed,

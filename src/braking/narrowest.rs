@@ -31,7 +31,7 @@ fn braked_at_once<N: Number>(foe: Braking) -> N {
     speed / (N::from(2.0) * N::from(foe.brakes.deceleration)) * speed
 }
 
-/// The room when both stand: S − σ Si.
+/// The room once both have stopped: S − σ Si.
 pub fn at_rest<N: Number>(ego: Braking, foe: Braking, sigma: f64) -> Needed<N> {
     let own = stopping_distance::<N>(ego.speed, ego.brakes);
     let other = N::from(sigma) * braked_at_once(foe);
@@ -53,7 +53,7 @@ pub fn minimal<N: Number>(ego: Braking, foe: Braking, sigma: f64) -> Needed<N> {
     let ramp_is_enough = ego.speed < deceleration * build_up / 2.0;
     let n = N::from;
     let (a, t3) = (n(deceleration), n(build_up));
-    // The one that stands first decides which moment is the narrowest. Twice the precision tells a tie from a near tie.
+    // Whichever stops first decides which moment is the narrowest. Twice the precision tells a tie from a near tie.
     let left = if ramp_is_enough { (n(2.0) * n(ego.speed) / a * t3).root() } else { n(ego.speed) / a + t3 / n(2.0) };
     let foe_stands = n(foe.speed) / n(foe.brakes.deceleration);
     if (foe_stands - n(response) - left).value() <= 0.0 {

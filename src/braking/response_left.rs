@@ -5,8 +5,8 @@ use super::late::{LateBraking, Leader};
 use super::{narrowest, rss};
 use crate::util::units::{Metre, Second};
 
-/// The longest response time T = t1 + t2 of the ego, in s, with which μ(T) is no larger than the gap: 0 where even an
-/// immediate response needs more room, infinite where the ego stands and any response would do.
+/// The longest response time T = t1 + t2 of the ego, in s, with which μ(T) does not exceed the gap: 0 where even an immediate
+/// response needs more room, infinite where the ego stands and any response would do.
 ///
 /// The arguments are those of [`super::mu`], where a foe for σ > 0 brakes at once. The relative error is below 1e-9
 /// where gap and μ do not nearly cancel.

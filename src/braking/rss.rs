@@ -8,7 +8,7 @@
 //! ```
 //!
 //! The paper leaves the values open; these are the ones of CARLA's RSS sensor and Intel's ad-rss-lib. Which of two oncoming
-//! ones keeps to its lane is not known here, so both brake with b.
+//! vehicles keeps to its lane is unknown here, so both brake with b.
 
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 

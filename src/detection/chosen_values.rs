@@ -1,6 +1,6 @@
 //! The values of a pair in a step of the measures that a log has only if they are chosen.
 //!
-//! What an event makes of the values of its steps (the smallest, the integral, …) is in [`crate::events`].
+//! How an event aggregates the values of its steps (the smallest, the integral, …) is in [`crate::events`].
 
 use super::encounter::Encounter;
 use super::kind::Kind;

@@ -1,4 +1,4 @@
-//! Which lanes a road user comes from and goes to: what its manoeuvre follows from.
+//! The lanes a road user comes from and goes to, which determine its manoeuvre.
 
 use smallvec::SmallVec;
 

@@ -44,7 +44,7 @@ pub struct Encounter {
     pub overlap: Metre,
     /// Whether they overlap by more than the contact tolerance.
     pub collision: bool,
-    /// Measures of a pair in conflict, or of one that the log's condition asks for; none of others.
+    /// Measures of a pair in conflict or selected by the log's condition; none of others.
     pub nearness: Option<Nearness>,
     /// The step meets the log's condition if its event's PET is below this: infinite where it does whatever the PET is, minus
     /// infinite where it does not.
@@ -70,8 +70,7 @@ pub struct Nearness {
     pub assessment: Assessment,
 }
 
-/// Which of a step's chances are those of a pair: those of a thread, and the place among them. Where they are says nothing about
-/// the pair.
+/// Where a step's chances of a pair are: the thread, and the place in its list. It is unrelated to the pair.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ChancesIndex {
     pub worker: u32,

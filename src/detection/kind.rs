@@ -62,7 +62,7 @@ impl Kind {
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum Severity {
-    /// None of the following.
+    /// Neither serious nor critical.
     Caution,
     /// The driver brakes too late with some probability, or thresholds are passed: by the rule of the options.
     Serious,

@@ -1,4 +1,4 @@
-//! The measures of an event that a log has only if they are chosen: what it makes of the values of its steps.
+//! The measures of an event that a log has only if they are chosen: aggregates of its steps' values.
 
 use crate::detection::measures::table::Over;
 use crate::options::measures::{ChosenMeasure, ChosenValues};

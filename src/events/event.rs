@@ -23,7 +23,8 @@ use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
 /// One conflict: a pair and a run of steps that meet the log's condition.
 ///
 /// The fields from `time` on describe the step with the smallest margin, except `collision` and the event's extremes, from
-/// `clearance` to `pet`; of two that struck each other, `kind`, `angle`, `x` and `y` are those of the first contact. The columns of a log follow from it: `output::schema`.
+/// `clearance` to `pet`; if they struck each other, `kind`, `angle`, `x` and `y` are those of the first contact. The columns of
+/// a log follow from it: `output::schema`.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Conflict {
@@ -96,7 +97,7 @@ pub struct Conflict {
     pub manoeuvre: Option<Manoeuvre>,
     /// Why it came about, where that is known.
     pub causes: Causes,
-    /// Why the one that changed lanes did so, where that is a cause and SUMO told it.
+    /// SUMO's reason for the lane change, where that is a cause and known.
     pub lane_change_reason: Option<LaneChangeReason>,
     /// Where the ego was and would go.
     pub ego_snapshot: Snapshot,

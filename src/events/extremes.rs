@@ -144,7 +144,7 @@ impl Observation<'_> {
         self.found.nearness.map_or(f64::INFINITY, |near| near.clearance)
     }
 
-    /// The values of this step. A crash probability that cannot be beyond one that is known already is not worked out.
+    /// The values of this step. A crash probability that cannot exceed the known one is not worked out.
     fn values(&self, known: &LoggedValues) -> LoggedValues {
         let Some(near) = &self.found.nearness else { return LoggedValues::NONE };
         let known = [known.crash_probability(), known.crash_probability_braking()];
@@ -180,7 +180,7 @@ impl Observation<'_> {
         Pair::of((self.frame, self.roster, self.found), self.around, self.past)
     }
 
-    /// The vehicles that stand and of which a stop would be a cause: of one that is followed it is its own.
+    /// The standing vehicles of which a stop would be a cause: a followed vehicle's stop is its own affair.
     fn standing(&self) -> [Option<UserIndex>; 2] {
         let Encounter { ego, foe, ego_row, foe_row, kind, .. } = *self.found;
         let stands = |user: UserIndex, row| {
@@ -289,8 +289,8 @@ impl Extremes {
         }
     }
 
-    /// Whether the next step is one before two strike each other, or the one in which they do: how they lie in each other
-    /// afterwards is no conflict.
+    /// Whether the next step is one before two strike each other, or the one in which they do: their overlap afterwards is not
+    /// a conflict.
     fn leads_to_the_contact(&self) -> bool {
         self.struck.is_none_or(|struck| struck.time > self.end)
     }
@@ -317,7 +317,7 @@ impl Extremes {
         closest.clearance < self.clearance || closest.overlap > self.overlap || closest.contact.is_some()
     }
 
-    /// Takes how severe a step is, and what it is if it is none of traffic's: that is asked only where it matters.
+    /// Takes how severe a step is, and which artefact: `artefact` is called only where it matters.
     fn assess(&mut self, now: Assessment, artefact: impl FnOnce() -> Option<Artefact>) {
         if self.of_traffic.is_none_or(|known| now > known) {
             match artefact() {
@@ -329,8 +329,8 @@ impl Extremes {
         self.assessed = self.assessed.max(now);
     }
 
-    /// How severe the event is, and what it is if it is none of traffic's. Of an event with steps of either kind those of
-    /// traffic count, if they are as severe as the others, or serious.
+    /// How severe the event is, and which artefact. If only some steps are artefacts, the others count if they are as severe,
+    /// or serious.
     pub fn verdict(&self) -> (Assessment, Option<Artefact>) {
         if self.is_tracked && self.begins_in_contact {
             return (self.assessed, Some(Artefact::Tracking));
@@ -344,8 +344,8 @@ impl Extremes {
         }
     }
 
-    /// The same with what was seen of a passing: one that crosses another's path close behind it, or close to it, was near. One
-    /// that turns into the other's road close behind it follows it from there.
+    /// The same, raised if one crossed the other's path close behind it, or passed close to it. After turning into the other's
+    /// road close behind it, it follows from there.
     pub(crate) fn verdict_with(&self, pet: Option<Pet>, rule: SeverityThresholds) -> (Assessment, Option<Artefact>) {
         let (assessment, artefact) = self.verdict();
         let crosses = !matches!(self.why.manoeuvre, Some(Manoeuvre::Following | Manoeuvre::Merge));
@@ -362,8 +362,7 @@ impl Extremes {
         self.is_tracked && self.begin == self.end
     }
 
-    /// Adds how close the two came between two steps, how they struck each other, how severe that was, and what it is if it is
-    /// none of traffic's.
+    /// Adds how close the two came between two steps, how they struck each other, how severe that was, and which artefact.
     pub(crate) fn come_closer(
         &mut self,
         closest: &Closest,

@@ -1,5 +1,5 @@
-//! Where the road users were in the last seconds, so that what an event records of both begins before the event: when a
-//! conflict opens, the first may have left a part of the conflict area already.
+//! Where the road users were in the last seconds, so that an event's record begins before the event: when a conflict opens, the
+//! first may already have left part of the conflict area.
 
 use std::collections::VecDeque;
 
@@ -10,7 +10,7 @@ use crate::traffic::frame::{Frame, Row};
 use crate::traffic::roster::UserIndex;
 use crate::util::units::{Metre, Radian, Second};
 
-/// The number of past steps, at least [`APART`] from one another, from which causes are told: 5 s, in which a vehicle crosses
+/// The number of past steps, at least [`APART`] from one another, that causes are derived from: 5 s, in which a vehicle crosses
 /// a junction. More are kept where a longer PET is looked for.
 const STEPS: usize = 10;
 /// The time between two of them, in s: half a second, in which a path bends by centimetres, less what sums of steps differ

@@ -17,7 +17,7 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// That of a first step.
+    /// Starts a span.
     pub fn of(seen: &Observation, keeps_steps: bool) -> Self {
         Self { extremes: Extremes::of(seen, true), steps: keeps_steps.then(|| vec![step(seen)]) }
     }
@@ -36,7 +36,7 @@ impl Span {
         *known = Some(is_reported || *known == Some(true));
     }
 
-    /// Notes that one of [`Extremes::standing`] stood in the last step, at this time, because of a stop.
+    /// Notes that one of [`Extremes::standing`] stood in the last step, at this time, at a scheduled stop.
     pub fn stood(&mut self, time: Second) {
         let Extremes { worst, why, .. } = &mut self.extremes;
         if worst.time == time {

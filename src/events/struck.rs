@@ -1,8 +1,7 @@
-//! How two of an event struck each other first.
+//! How the pair of an event first struck each other.
 //!
-//! A step ends at some moment after the contact, the later the longer it lasts: one may have turned meanwhile, or have stopped,
-//! and the two lie in each other somehow. The first contact is found between the steps, so that the kind and the place of a
-//! collision depend on no step.
+//! A step ends some time after the contact: by then one may have turned or stopped, and the two overlap somehow. The first
+//! contact is found between the steps, so the kind and place of a collision do not depend on them.
 
 use super::moment::Moment;
 use super::past::Past;
@@ -15,8 +14,8 @@ use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::UserIndex;
 use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
 
-/// A person's course is the direction in which it has gone this far, in m: SUMO turns one that steps aside, or is about to
-/// be hit, across its way.
+/// A person's course is the direction in which it has gone this far, in m: SUMO turns a person across its way if it steps aside
+/// or is about to be hit.
 const WALKED: Metre = 0.5;
 
 /// The first contact of two.

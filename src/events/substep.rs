@@ -1,11 +1,11 @@
-//! What happens to the two of an event between two steps: each moves evenly from where it was to where it is, on an arc where
+//! What happens to the pair of an event between two steps: each moves evenly from where it was to where it is, on an arc where
 //! it turns.
 //!
 //! A coarse step may end before and after a pair came closest, or even touched. Where road users are moved back to the moment
-//! of their speeds, the place that SUMO reports is another one on their way. The signed distance of two rectangles that do not
-//! turn (below 0: how deep they overlap) is a convex function of time, so that a golden-section search finds the smallest; a way
-//! on which they turn is cut into parts in which they hardly do. The time to collision needs no search: of two in line it is a
-//! quotient of linear functions of time, which has its extremes at the ends of the step.
+//! of their speeds, SUMO reports a different place on their path. The signed distance of two rectangles that do not turn (below
+//! 0: how deep they overlap) is a convex function of time, so that a golden-section search finds the smallest; a way on which
+//! they turn is cut into parts in which they hardly do. The time to collision needs no search: of two in line it is a quotient
+//! of linear functions of time, which has its extremes at the ends of the step.
 
 use crate::geometry::bow::Bow;
 use crate::geometry::rectangle::{Rectangle, direction};
@@ -71,7 +71,7 @@ pub(super) struct FirstContact {
 
 impl Between<'_> {
     /// How close they came; none where the begin or the end of the step is closest. They collide where they overlap by more
-    /// than `tolerance`, and between the ends by as much as arcs leave the straight line besides: so well is the way known. A
+    /// than `tolerance`, and between the ends also by the deviation of arcs from the straight line: the accuracy of the path. A
     /// collision that lasts until the end of the step is one only if it `is_seen` there, as the tolerance depends on the lanes
     /// that they are on.
     pub(crate) fn closest(&self, tolerance: Metre, is_seen: bool) -> Option<Closest> {

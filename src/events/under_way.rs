@@ -106,7 +106,7 @@ pub(super) struct Keeps {
 }
 
 impl Event {
-    /// That of a first step.
+    /// Starts an event.
     pub fn of(seen: &Observation, keeps: Keeps) -> Self {
         let pair = [seen.found.ego, seen.found.foe];
         let followed = Span::of(seen, keeps.steps);
@@ -254,7 +254,7 @@ impl Event {
         expected.or(known.map(|pet| PetSoFar::Known(pet.lasts)))
     }
 
-    /// Whether the condition is met at this time, that of its last step.
+    /// Whether the condition holds at this time, that of its last step.
     pub(crate) fn is_met_at(&self, time: Second) -> bool {
         self.followed.extremes.end == time
     }
@@ -266,7 +266,7 @@ impl Event {
         last.flat_map(|span| span.extremes.standing.into_iter().flatten())
     }
 
-    /// Notes which of these vehicles stood at this time, its last step, because of a stop.
+    /// Notes which of these vehicles stood at this time, its last step, at a scheduled stop.
     pub(crate) fn note_stopped(&mut self, stopped: &[UserIndex], time: Second) {
         let met = self.met.as_mut().and_then(|met| met.last_mut());
         for span in [&mut self.followed].into_iter().chain(met).filter(|span| span.extremes.end == time) {
@@ -311,8 +311,8 @@ impl Event {
         is_over(&self.followed.extremes, frame.time) || self.pair.iter().any(|user| frame.row_of(*user).is_none())
     }
 
-    /// Whether the PET of a closed event is known at this time, or will not be. One that the second is about to make shorter
-    /// is waited for as long again.
+    /// Whether the PET of a closed event is known at this time, or will not be. If the second is about to shorten it, it waits
+    /// as long again.
     pub(crate) fn settles(&mut self, time: Second, halves: &mut Bisection, pets: Pets) -> bool {
         let since = time - self.followed.extremes.end;
         let Some(Driven { paths, pet }) = self.driven.as_deref_mut() else { return true };

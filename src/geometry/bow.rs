@@ -1,4 +1,4 @@
-//! The way between two poses that a road user had: the arc on which its heading turns evenly.
+//! The path between two poses of a road user: the arc on which its heading turns evenly.
 //!
 //! A step of 1 s at 15 m/s in a bend of 50 m leaves the straight line by 0.6 m.
 

@@ -16,8 +16,8 @@ use crate::util::units::Metre;
 /// in m.
 pub const TOLERANCE: Metre = 0.01;
 
-/// The same where a pair is in conflict, in m: where one comes along the flank of the way of another, a centimetre to the
-/// side is metres along the way.
+/// The same where a pair is in conflict, in m: where one comes along the flank of another's path, a centimetre to the side is
+/// metres along it.
 pub const FINE: Metre = 1e-4;
 
 /// The same between two poses of a path, where the line through them cuts a corner, in m.

@@ -23,7 +23,7 @@ pub struct Vertex {
 /// rounded to 1e-12 m and segments are a millimetre long or more. A lane that is stretched is so by far more.
 const TO_SCALE: f64 = 1e-8;
 
-/// A line beside another is at most this many times as long or as short: inside a narrow bend.
+/// The lengths of two lines beside each other differ by at most this factor: inside a narrow bend.
 const MOST_BESIDE: f64 = 4.0;
 
 /// Lines, numbered from 0, each with its vertices one after the other.

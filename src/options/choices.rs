@@ -1,4 +1,4 @@
-//! What an option may be where it is one of several.
+//! The values of options with a choice.
 
 use serde::Serialize;
 

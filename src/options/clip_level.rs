@@ -1,4 +1,4 @@
-//! Of which conflicts a run keeps clips.
+//! The conflicts of which a run keeps clips.
 
 use serde::Serialize;
 

@@ -11,11 +11,11 @@ use crate::util::units::{MetrePerSecondSquared, Second};
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum DriverModel {
-    /// Looks ahead: response time 0.92 s (Triggs and Harris 1982), SD 0.28 s; deceleration 8.45 ± 1.42 m/s² within 4.23 to
+    /// Attentive driver: response time 0.92 s (Triggs and Harris 1982), SD 0.28 s; deceleration 8.45 ± 1.42 m/s² within 4.23 to
     /// 12.68 (Cunto and Saccomanno 2008).
     #[default]
     Attentive,
-    /// Is surprised: response time 1.5 s (Green 2000), with the same relative SD; decelerations of the attentive driver.
+    /// Surprised driver: response time 1.5 s (Green 2000), with the same relative SD; decelerations of the attentive driver.
     Distracted,
     /// The competent and careful driver of UN R157, annex 3: 0.4 s to evaluate the risk and 0.75 s until it brakes; 0.774 g, which
     /// 12.65 m/s³ build up in 0.6 s.

@@ -102,7 +102,7 @@ pub struct Options {
     /// With `--severity-rule fhwa`, a conflict is serious if its DRAC is above this, in m/s² (Archer 2005).
     #[cfg_attr(feature = "clap", arg(long, value_name = "M/S²", default_value_t = SERIOUS_DRAC, value_parser = deceleration_threshold, help_heading = "Severity"))]
     pub serious_drac: MetrePerSecondSquared,
-    /// Count conflicts that are SUMO's or a tracker's making, not traffic's; else they are only logged.
+    /// Count artefacts, conflicts made by SUMO or a tracker, not traffic; otherwise they are only logged.
     #[cfg_attr(feature = "clap", arg(long, help_heading = "Severity"))]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub artefacts: bool,
@@ -117,7 +117,7 @@ pub struct Options {
     /// `ttc < 3 or pet < 2 or margin < 0`.
     #[cfg_attr(feature = "clap", arg(long, value_name = "CONDITION", default_value_t, help_heading = "Log"))]
     pub log: Condition,
-    /// Measures that the log has besides its default columns: `all`, or names such as `tadv,t2` (docs/measures.md).
+    /// Measures to log besides the default columns: `all`, or names such as `tadv,t2` (docs/measures.md).
     #[cfg_attr(feature = "clap", arg(long, value_name = "default|all|NAME,…", default_value_t, help_heading = "Log"))]
     #[serde(skip_serializing_if = "Measures::is_empty")]
     pub measures: Measures,
@@ -172,7 +172,7 @@ impl Options {
     /// Checks that the options are possible for road users whose future is not known.
     ///
     /// # Errors
-    /// [`Error::FutureUnknown`] if they are to be met where they really drive.
+    /// [`Error::FutureUnknown`] if predictions are to use the path really driven.
     pub fn check_future_is_unknown(&self) -> Result<()> {
         if self.path != PathModel::Driven {
             return Ok(());

@@ -1,4 +1,4 @@
-//! Work that a run leaves out where the scene does not need it; `--no-shortcuts` has it do all of it, or what it names.
+//! Work that a run skips where the scene does not need it; `--no-shortcuts` disables all shortcuts, or those it names.
 
 use serde::Serializer;
 

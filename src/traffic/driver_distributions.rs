@@ -68,7 +68,7 @@ impl Driver {
         Self { build_up, ..Self::of([mean.ln() - spread / 2.0, spread.sqrt()], braking) }
     }
 
-    /// One that stops within a known time at a known deceleration: a person on foot.
+    /// Stops within a known time at a known deceleration: a person on foot.
     pub fn certain(response: Second, deceleration: MetrePerSecondSquared) -> Self {
         Self::of([response.ln(), 0.0], [deceleration, 0.0, deceleration, deceleration])
     }
@@ -101,7 +101,7 @@ impl Driver {
         if deviation > 0.0 { libm::erfc(above / (deviation * SQRT_2)) / 2.0 } else { f64::from(above < 0.0) }
     }
 
-    /// The probability that its vehicle brakes too weakly, where every deceleration below one that is too weak is, too.
+    /// The probability that its vehicle brakes too weakly, if `is_too_weak` is true up to some deceleration.
     pub(crate) fn brakes_too_weakly(&self, is_too_weak: impl Fn(MetrePerSecondSquared) -> bool) -> f64 {
         /// The deceleration is then right to a millionth of the range.
         const HALVINGS: u32 = 20;

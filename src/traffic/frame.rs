@@ -103,7 +103,7 @@ pub struct Frame {
     behind: Second,
     /// By [`UserIndex`], the row.
     rows: TiVec<UserIndex, u32>,
-    /// The first road user that is where none can be, and why.
+    /// The first road user with an impossible state, and why.
     impossible: Option<(UserIndex, String)>,
 }
 

@@ -1,4 +1,4 @@
-//! Why a vehicle changed lanes, as SUMO tells.
+//! SUMO's reason for a lane change.
 
 use serde::{Serialize, Serializer};
 use strum::{IntoStaticStr, VariantArray};

@@ -1,4 +1,4 @@
-//! The limits of everything that closecall reads, each with its reason: one table for every door.
+//! The limits of everything that closecall reads, each with its reason: one table for all readers.
 //!
 //! A value beyond them is a mistake in the file, and its results mean nothing: a vehicle 10¹⁵ m wide meets every
 //! other. Each reader refuses it with the file, the line, the value and the limit. docs/limits.md has the same table.
@@ -16,7 +16,7 @@ pub struct Limit {
     pub is_open: bool,
     /// The largest value.
     pub most: f64,
-    /// Why nothing real is beyond it.
+    /// Why values beyond it are impossible.
     pub reason: &'static str,
 }
 
@@ -103,7 +103,7 @@ pub fn is_noise(speed: f64) -> bool {
     (-SPEED_NOISE..0.0).contains(&speed)
 }
 
-/// What is said of such speeds.
+/// A line on such speeds.
 pub fn said_of_noise(rows: u64) -> Option<String> {
     (rows > 0).then(|| {
         format!("speeds: {rows} are below 0 by at most {SPEED_NOISE} m/s, which is noise, so they are read as 0")

@@ -18,7 +18,7 @@ pub type MetreSquaredPerSecondCubed = f64;
 pub type Ratio = f64;
 /// An angle in rad, counter-clockwise from +x.
 pub type Radian = f64;
-/// An angle of longitude or latitude, in degrees: the only one that is not in rad, as maps have it so.
+/// An angle of longitude or latitude, in degrees: the only angle not in rad, as maps have it so.
 pub type Degree = f64;
 /// A probability, 0 to 1.
 pub type Probability = f64;

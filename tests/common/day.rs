@@ -124,7 +124,7 @@ impl Course {
     }
 }
 
-/// Every course from a lane that nothing leads to, to one that leads nowhere.
+/// Every course from a lane that nothing leads to, to a dead end.
 fn courses(net: &Net) -> Vec<Course> {
     let lane = |index: LaneIndex| &net.lanes[index];
     let is_normal = |index: LaneIndex| net.edges[lane(index).edge].function == EdgeFunction::Normal;

@@ -116,7 +116,7 @@ fn a_person_on_the_pavement_is_not_in_the_way() {
     );
 }
 
-/// What is said of a car that overlaps a person at this place: of collisions, and of what is set aside.
+/// The numbers of collisions and of set-aside conflicts when a car overlaps a person at this place.
 fn over_a_person(x: f64, speed: f64) -> (u64, Option<u64>) {
     let text = r#"<net><edge id=":j_w0" function="walkingarea">
         <lane id=":j_w0_0" length="4" shape="0,-2 9,-2 9,2 0,2"/></edge></net>"#;

@@ -1,4 +1,4 @@
-//! Replays with `--path driven`: road users are met where they really drove afterwards.
+//! Replays with `--path driven`: predictions use the recorded future path.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write as _;

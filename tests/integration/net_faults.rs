@@ -16,7 +16,7 @@ fn rows(log: &Path) -> Vec<Vec<String>> {
     text.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect()
 }
 
-/// Ends a run with a log in a folder; returns the lines that it says of the net.
+/// Ends a run with a log in a folder; returns its lines on the net.
 fn said(run: impl FnOnce(Run) -> Run, net: &Arc<Net>, log: &Path) -> Vec<String> {
     let options = RunOptions::from(Options { path: PathModel::Straight, ..Options::default() });
     let record = RunRecord::new(PathBuf::from("a.sumocfg"), options.clone());
@@ -27,7 +27,7 @@ fn said(run: impl FnOnce(Run) -> Run, net: &Arc<Net>, log: &Path) -> Vec<String>
     summary.remarks.into_iter().filter(|line| line.starts_with("net faults") || line.starts_with("the worst")).collect()
 }
 
-/// A person stands, and each of so many cars drives over it.
+/// A person stands, and each of `cars` cars drives over it.
 fn pass(mut run: Run, cars: u32) -> Run {
     let options = Options::default();
     let car = run.roster.profile(Profile::vehicle(&SumoType::car("car"), &options)).unwrap();

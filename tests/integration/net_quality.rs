@@ -1,4 +1,4 @@
-//! What is said of a net that is not drawn as it is driven.
+//! Warnings about a net that is not drawn as it is driven.
 
 use closecall::traffic::net::Net;
 use closecall::traffic::net::quality::{lengths, overlapping};

@@ -361,7 +361,7 @@ fn a_vehicle_that_stands_because_of_a_stop_stood_there() {
     };
     assert_eq!([causes(&road(), &[1]), causes(&road(), &[])], [["stood"], [""]]);
     assert_eq!([causes(&bend(18.0), &[1]), causes(&bend(18.0), &[])], [["stood"], ["behind_curve"]]);
-    assert_eq!(causes(&road(), &[0]), [""], "a stop of the one that drives");
+    assert_eq!(causes(&road(), &[0]), [""], "a stop of the moving one");
 }
 
 #[test]

@@ -45,7 +45,7 @@ class Course(NamedTuple):
 
 
 class Crossing(NamedTuple):
-    """How a second crosses the way of a first."""
+    """How a second crosses the path of a first."""
 
     pet: float
     enters: float

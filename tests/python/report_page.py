@@ -114,5 +114,5 @@ def made_up(folder: Path, count: int, **changes: str) -> Path:
 
 
 def severe(found: list[Row]) -> list[Row]:
-    """Those that the page shows at first."""
+    """The conflicts that the page shows at first."""
     return [row for row in found if row["severity"] != "caution"]

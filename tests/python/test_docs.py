@@ -1,4 +1,4 @@
-"""The commands and scripts of the README and the tutorials run as they stand there, and print what the pages show.
+"""The commands and scripts of the README and the tutorials run as printed, and give the output that the pages show.
 
 A block ```console has commands behind `$ ` and what each prints, `...` for what is left out. A block with a title
 becomes the file of that name. A block that cannot run has a comment above it, `<!-- not run: why -->`.

@@ -26,7 +26,7 @@ PARALLEL = 0.002
 
 @pytest.fixture(scope="module")
 def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The log of a run in which a car that turns left gets in the way of others; some come later or leave."""
+    """The log of a run in which a left-turning car obstructs others; some come later or leave."""
     folder = tmp_path_factory.mktemp("asam")
     shutil.copytree(NETS / "left_turn", folder / "net", ignore=shutil.ignore_patterns("expected"))
     words = ["--quiet", "--end", "40", "--log-clips", "caution", "--", "--no-warnings"]

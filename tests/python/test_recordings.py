@@ -1,4 +1,4 @@
-"""Recordings: what is there is read, what is missing is said, what is not understood is refused."""
+"""Recordings: existing data is read, missing data reported, data that is not understood refused."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def test_things_are_left_out_and_counted(tmp_path: Path) -> None:
     )
     file = written(tmp_path, lines(",vehicle", name="kind") + things)
     said, found = replay(file, "--columns", COLUMNS + ",class=kind")
-    assert '"static", "background" are no road users, so their rows are left out: 6' in said
+    assert '"static", "background" are not road users, so their rows are left out: 6' in said
     assert vehicles(file) == 2 and [row["foe"] for row in found] == ["b"]
 
 
@@ -99,7 +99,7 @@ def test_a_missing_file_of_classes_is_said(tmp_path: Path) -> None:
     cells = "".join(f"1,{n},{n},0,0,1.8,4.5,10,0\n2,{n},50,{n},90,0,0,0,1\n" for n in range(5))
     file = written(tmp_path, names + cells, "7_tracks.csv")
     said, _ = replay(file, "--frame-rate", "10")
-    assert "there is no file 7_tracksMeta.csv beside it" in said
+    assert "the file 7_tracksMeta.csv with the classes is missing" in said
     written(tmp_path, "trackId,class\n1,car\n", "7_tracksMeta.csv")
     said, _ = replay(file, "--frame-rate", "10")
     assert '7_tracksMeta.csv lacks 1 of the road users, one of them "2"' in said

@@ -252,7 +252,7 @@ def test_ctrl_c_ends_a_replay_cleanly(scenario: Copy, tmp_path: Path) -> None:
     process.send_signal(signal.SIGINT)
     _, message = process.communicate(timeout=30)
     assert process.returncode == 130
-    assert re.fullmatch(r"closecall: interrupted at [0-9.]+ s; what was found so far is in the log\n", message), message
+    assert re.fullmatch(r"closecall: interrupted at [0-9.]+ s; the log has all conflicts so far\n", message), message
     found = json.loads((tmp_path / "out" / "run.json").read_text())
     assert found["complete"] is False and found["summary"]["steps"] < 400
     assert sum(count["count"] for count in found["summary"]["conflicts"]) == len(

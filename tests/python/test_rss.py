@@ -123,7 +123,7 @@ def test_mu_by_rss_is_the_safe_distance(kind: str) -> None:
 
 
 def test_mu_by_rss_finds_a_follower_far_behind() -> None:
-    # RSS asks for 90.78125 m at 20 m/s behind one that stands; the follower's own brakes stop it after 44 m.
+    # RSS asks for 90.78125 m at 20 m/s behind a standing car; the follower's own brakes stop it after 44 m.
     frame = {"id": ["ego", "foe"], "x": [0, 70], "y": [0, 0], "heading": [0, 0], "speed": [20, 0]}
     found = {}
     for model in ("rss", "minimal"):

@@ -11,7 +11,7 @@ Row = dict[str, str]
 
 @dataclass(frozen=True)
 class Measure:
-    """A column of the series. Of a pair without a value the score is that of no danger at all."""
+    """A column of the series. A pair without a value scores as no danger at all."""
 
     name: str
     rises: bool

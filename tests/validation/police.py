@@ -120,7 +120,7 @@ def main() -> None:
     junctions = Junctions(arguments.net)
     reported = crashes(arguments.crashes, junctions)
     counted = conflicts(arguments.logs, junctions)
-    # A junction that nobody enters may be at the rim of the net.
+    # A junction without entering vehicles may be at the rim of the net.
     used = counted["vehicles entered"] > 0
     print(f"{int(reported[used].sum())} crashes within {WITHIN:g} m of {int(used.sum())} junctions\n")
     groups = {"all": used, "with traffic lights": used & junctions.lights}

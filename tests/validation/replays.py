@@ -1,4 +1,4 @@
-"""What `closecall replay` says of each pair of a recording in each step.
+"""What `closecall replay` reports for each pair of a recording in each step.
 
 Only the public command is used. The condition keeps every step in which one of the two would reach the other within
 10 s, would have to respond within 5 s, or has a negative margin: the steps of the default condition are among them.

@@ -38,7 +38,7 @@ def message(error: BaseException) -> str:
 
 
 def run(name: str, words: list[str], task: str, folder: str, here: str, is_wanted: Callable[[], bool]) -> None:
-    """Do one run, and give it up once it is no longer wanted.
+    """Do one run, and stop it when it is no longer wanted.
 
     Raises:
         RuntimeError: the run failed, with its error message.

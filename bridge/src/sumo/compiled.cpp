@@ -105,8 +105,7 @@ ClosecallDirect find_direct(void* module, bool of_persons) {
     return has_all ? direct : ClosecallDirect{};
 }
 
-// Whether a vehicle has departed: one that waits for that may be deleted and never have arrived. SUMO always reports a
-// person as arrived.
+// Whether a vehicle has departed: a waiting vehicle may be deleted without arriving. SUMO always reports a person as arrived.
 bool is_there(const ClosecallDirect& direct, User user) {
     return direct.is_visible == nullptr || direct.is_visible(user);
 }

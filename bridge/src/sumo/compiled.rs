@@ -124,14 +124,14 @@ impl Compiled {
         let mut read = RawReading::default();
         let kept = kept.map_or(null_mut(), |KeptAddress(address)| &raw mut *address);
         // SAFETY: `self` is complete, since `of` returns nothing else, and its functions keep their addresses: the module is
-        // never unloaded. Those of `direct` are set only for a SUMO in which they are what compiled.cpp declares, and a road
-        // user is read right after it was looked up: it does not go away before SUMO's next step. `id` has the given length
-        // and `read` has the layout of what is written to it; neither is kept. No exception leaves the function: it is
-        // `noexcept` and catches all. libsumo itself is not threaded, and every caller holds Python's lock, as for the Python
-        // getters. `kept` is null or what this function has written there for the same road user. If only closecall makes
-        // steps (`Source::set_exclusive`), SUMO deletes a road user only in a step, and then reports that it has arrived
-        // (MSVehicleControl::removePending, MSTransportableControl::erase), so that `LibsumoDomain::update` drops the
-        // address before any road user is read.
+        // never unloaded. The pointers of `direct` are set only for a SUMO that matches compiled.cpp's declarations. A road
+        // user is read right after it is looked up, and stays until SUMO's next step. `id` has the given length and `read` has
+        // the layout of what is written to it; neither is kept. No exception leaves the function: it is `noexcept` and catches
+        // all. libsumo itself is not threaded, and every caller holds Python's lock, as for the Python getters. `kept` is null
+        // or what this function has written there for the same road user. If only closecall makes steps
+        // (`Source::set_exclusive`), SUMO deletes a road user only in a step, and then reports that it has arrived
+        // (MSVehicleControl::removePending, MSTransportableControl::erase), so that `LibsumoDomain::update` drops the address
+        // before any road user is read.
         let is_known = unsafe { closecall_read(&raw const *self, id.as_ptr().cast(), id.len(), kept, &raw mut read) };
         let RawReading { x, y, z, angle, speed, is_inside } = read;
         is_known.then_some(if is_inside { Reading::Inside } else { Reading::At { x, y, z, angle, speed } })

@@ -1,10 +1,10 @@
-//! What tells one simulation from another: `load` and `loadState` put another in its place without a word.
+//! How simulations are distinguished: `load` and `loadState` replace one silently.
 //!
 //! Compared are the time, the numbers of vehicles that were ever loaded and inserted, and where the time makes a jump the
 //! configuration, the net and the seed. Two states of the same scenario and seed at the same time are the same simulation.
 //!
-//! Where a script calls `executeMove` after a step, SUMO does most of the next one then, and its lists of that step are empty
-//! when the script comes to it: vehicles are inserted that did not depart, as far as the lists tell.
+//! If a script calls `executeMove` after a step, SUMO already does most of the next one. The lists of that step are then empty:
+//! vehicles are inserted that, by the lists, did not depart.
 
 use closecall::util::units::Second;
 use closecall_run::util::decimal::Written;

@@ -138,7 +138,7 @@ impl Libsumo {
         simulation::edges_of_persons(run, |id| self.edge_of_person.bind(py).call1((id,)))
     }
 
-    /// Asks which vehicles in conflict stand because of a stop; those that park off the road are not in the frame.
+    /// Asks which vehicles in conflict are at a scheduled stop; those that park off the road are not in the frame.
     fn read_stops(&self, py: Python, run: &mut Run) -> PyResult<()> {
         for user in run.standing() {
             let id: &str = run.roster.id(user);

@@ -1,4 +1,4 @@
-//! The results of logs: statistics, a report, pictures, files for other tools; and many runs.
+//! Log analysis: statistics, a report, pictures, files for other tools; and many runs.
 //!
 //! ```
 //! use closecall_analysis::study::number::number;
@@ -9,12 +9,12 @@
 //! | module | what is in it |
 //! |---|---|
 //! | [`logged`] | logs read back |
-//! | [`filter`] | by what conflicts are chosen, for all that reads logs |
+//! | [`filter`] | how conflicts are selected, for all log readers |
 //! | [`statistics`] | rates, quantiles, extremes, comparisons |
-//! | [`dataset`], [`variants`] | conflicts of many runs, by what their runs differ in |
+//! | [`dataset`], [`variants`] | conflicts of many runs, grouped by settings |
 //! | [`report`], [`plot`], [`playback`] | the page, charts, clips as pictures |
 //! | [`export`] | files for other tools |
-//! | [`batch`] | sweeps, regression tests, a conflict cut out as a scenario |
+//! | [`batch`] | sweeps, regression tests, conflicts extracted as scenarios |
 //! | [`study`] | error against run time of a scenario |
 
 pub mod batch;

@@ -1,4 +1,4 @@
-//! `closecall extract`: one conflict as a scenario of its own.
+//! `closecall extract`: one conflict as a standalone scenario.
 
 use std::path::{Path, PathBuf};
 
@@ -19,7 +19,7 @@ use closecall_run::util::decimal::Written;
 pub(crate) struct ExtractArgs {
     #[command(flatten)]
     conflict: SelectorArgs,
-    /// What to make of the conflict.
+    /// Format of the scenario.
     #[arg(long, value_enum, default_value_t)]
     format: ExtractFormat,
     /// Folder for the scenario, new or empty; the file of an OSI trace.
@@ -33,7 +33,7 @@ pub(crate) struct ExtractArgs {
     quiet: bool,
 }
 
-/// What a conflict is made into.
+/// The format of an extracted conflict.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum ExtractFormat {
     /// A SUMO scenario in which the conflict happens again, with a test.

@@ -1,4 +1,4 @@
-//! `closecall inspect`: what a recording is taken for.
+//! `closecall inspect`: identifies a recording.
 
 use std::path::PathBuf;
 

@@ -54,7 +54,7 @@ pub(super) enum Command {
     /// Show the seconds around a conflict in sumo-gui
     #[command(args_override_self = true)]
     Show(playback::ShowArgs),
-    /// Extract a conflict as a scenario and a test
+    /// Extract a conflict as a standalone scenario and a test
     #[command(args_override_self = true)]
     Extract(extract::ExtractArgs),
     /// Write a log in the format of another tool: GeoJSON, GeoParquet, GeoPackage, sumo-gui, device.ssm

@@ -21,7 +21,7 @@ pub(crate) struct RegressArgs {
     /// Scenario folders, or folders that contain scenario folders.
     #[arg(value_name = "DIR", required = true)]
     folders: Vec<PathBuf>,
-    /// Make the results of this run the expected ones.
+    /// Approve the results of this run as the baseline.
     #[arg(long)]
     bless: bool,
     /// Write the results as JUnit XML as well.

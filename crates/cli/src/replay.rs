@@ -23,8 +23,8 @@ use closecall_run::run::recorded::{Ending, RecordedRun};
 #[derive(Args)]
 #[command(next_help_heading = "Run")]
 pub(crate) struct ReplayArgs {
-    /// Recording to check: SUMO's fcd-output as XML, CSV or Parquet, SSAM's .trj, Vissim's .fzp, or a table of trajectories; also
-    /// gzipped. Several tables of one time base, such as those of vehicles and of pedestrians, are one recording.
+    /// Maximum number of threads that test the pairs of a step [default: one per processor]. With 1, no thread reads the steps
+    /// ahead.
     #[arg(value_name = "FILE", required = true, help_heading = None::<&str>)]
     recordings: Vec<PathBuf>,
     /// Net on which the recording was made. Without one, paths follow no lanes: see --path arc.
@@ -32,15 +32,14 @@ pub(crate) struct ReplayArgs {
     net: Option<PathBuf>,
     #[command(flatten)]
     tracks: TrackOptions,
-    /// Route and additional files that define the vehicle types and the routes; types they do not define are SUMO's default
-    /// ones.
+    /// Route and additional files that define the vehicle types and the routes; other types are SUMO's defaults.
     #[arg(short = 'r', long, value_name = "FILE,…", value_delimiter = ',')]
     route_files: Vec<PathBuf>,
     /// What the traffic lights showed: SUMO's output of a timedEvent SaveTLSStates or SaveTLSSwitchStates; also gzipped. It needs
     /// a net. Without it the causes ran_red and late_amber are not found.
     #[arg(long, value_name = "FILE", requires = "net")]
     signals: Option<PathBuf>,
-    /// Where vehicles stopped: SUMO's --stop-output; also gzipped. Without it the cause stood is found for obstacles alone.
+    /// Where vehicles stopped: SUMO's --stop-output; also gzipped. Without it the cause stood is found only for obstacles.
     #[arg(long, value_name = "FILE")]
     stops: Option<PathBuf>,
     /// The recording was made with SUMO's sublane model (--lateral-resolution), where vehicles move sideways within a lane.

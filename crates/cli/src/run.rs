@@ -36,8 +36,8 @@ pub(crate) struct RunArgs {
     /// Length of a simulation step, in s.
     #[arg(long, value_name = "S", value_parser = step_length)]
     step_length: Option<Second>,
-    /// Threads at most, SUMO's own included [default: one per processor]. With 2, closecall works while SUMO computes its next
-    /// step; more help with thousands of road users. Use 1 when running many simulations at once.
+    /// Maximum number of threads, SUMO's own included [default: one per processor]. With 2, closecall works while SUMO computes
+    /// its next step; more help with thousands of road users. Use 1 when running many simulations at once.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
     threads: Option<u8>,
     /// With `--gui`, write the kind and the time left beside each conflict.

@@ -15,7 +15,7 @@ pub(super) struct SelectorArgs {
     /// The conflict's id in the log.
     #[arg(value_name = "ID", required_unless_present = "worst")]
     id: Option<u64>,
-    /// The worst conflict (1), the second worst (2), and so on, instead of an id; only an id names one that is not traffic's.
+    /// The worst conflict (1), the second worst (2), and so on, instead of an id. Artefacts can be chosen only by id.
     #[arg(long, value_name = "N", conflicts_with = "id")]
     worst: Option<usize>,
 }

@@ -15,7 +15,7 @@ use closecall_run::util::output_file;
 /// Which logs to analyse, and how to print the result.
 #[derive(Args)]
 pub(crate) struct StatsArgs {
-    /// Log folders, or folders that contain log folders at any depth, such as the results of a sweep.
+    /// Crashes observed in reality for the runs of --against: estimate how many the first set may have.
     #[arg(value_name = "LOG", required = true)]
     folders: Vec<PathBuf>,
     /// What to group the conflicts by.

@@ -82,7 +82,7 @@ pub struct ShowRequest {
     pub quit_on_end: bool,
 }
 
-/// A film that is to be made of pictures.
+/// A film to be made from pictures.
 #[derive(Clone, Debug)]
 pub struct FilmRequest {
     /// Its pictures as SVGs, in their order.

@@ -84,7 +84,7 @@ pub enum Error {
         message: String,
     },
     /// The user ended the run.
-    #[error("interrupted at {} s; what was found so far is in the log", in_microseconds(*time))]
+    #[error("interrupted at {} s; the log has all conflicts so far", in_microseconds(*time))]
     Interrupted {
         /// The simulated time that was reached.
         time: f64,

@@ -120,7 +120,7 @@ fn pair(chance: &mut Chance, scene: &str) -> [Circling; 2] {
     match scene {
         BOTH => [circling(origin, PI, 0.1), circling(around, PI, 0.1)],
         FOE => [circling(origin, PI, 0.0), circling(around, PI, 0.1)],
-        // On the next lane, turning a little: one comes along the flank of the way of the other.
+        // On the next lane, turning a little: one comes along the flank of the other's path.
         _ => [circling(origin, 0.02, 0.01), circling([[-10.0, 25.0], [2.1, 4.0]], 0.1, 0.03)],
     }
 }

@@ -186,7 +186,7 @@ impl Detector {
         self.pairs.iter_mut().for_each(Vec::clear);
         let most = if all { MOST_OF_ALL } else { FEWEST_PAIRS.max(count * PAIRS.count()) };
         self.team.each(self.pairs.iter_mut().take(busy), parts, |pairs, part| {
-            // A crowd in one place is near itself a billion times: the pairs so far are enough to refuse it.
+            // A crowd in one place makes a billion near pairs: those found so far suffice to refuse it.
             for piece in part.clone().step_by(PIECE).map(|start| start..part.end.min(start + PIECE)) {
                 if pairs.len() > most {
                     break;

@@ -1,8 +1,8 @@
-//! Crash probabilities: an upper bound for each pair that is measured, the value where somebody asks for it.
+//! Crash probabilities: an upper bound for each pair that is measured, the value on request.
 //!
 //! A driver whose vehicle brakes as weakly as it may has the shortest wait, so the probability that it responds later than that
 //! wait is an upper bound of the crash probability. It takes one closed form instead of sixteen. The value is worked out if
-//! it could be the conflict's largest so far, decide its severity or a condition, or stand in an alarm or a series.
+//! it could be the conflict's largest so far, decide its severity or a condition, or appear in an alarm or a series.
 
 use std::cell::Cell;
 
@@ -26,7 +26,7 @@ pub(super) enum Chance {
     Known(Probability),
     /// It follows from how this driver can evade.
     Of {
-        /// The type of the one that has to brake.
+        /// The type of whichever has to brake.
         driver: ProfileIndex,
         braking: LateBraking,
         evasion: Evasion<Limits>,
@@ -71,7 +71,7 @@ impl Chances {
         })
     }
 
-    /// Adds a pair of which so many probabilities were not worked out; returns its number.
+    /// Adds a pair with `left_out` probabilities not worked out; returns its number.
     pub fn add(&mut self, of_pair: [Chance; 2], left_out: usize) -> u32 {
         self.left_out += left_out as u64;
         self.of_pairs.push(of_pair);

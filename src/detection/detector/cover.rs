@@ -1,7 +1,7 @@
-//! How far ahead the two of a pair are met: until both stand, or further where the log's condition looks further.
+//! How far ahead a pair is predicted: until both stand, or further if the log's condition looks further.
 //!
-//! A pair that meets before both stand is met there, however far the condition looks, so that its gap and μ are the same
-//! with every condition. Only a pair that does not is met again with the longer distances.
+//! If a pair meets before both stand, its gap and μ are measured there, so they are the same under every condition. Only other
+//! pairs are predicted again with the longer distances.
 
 use crate::braking::stopping_distance;
 use crate::detection::measures::ttc::HORIZON;
@@ -10,7 +10,7 @@ use crate::traffic::frame::State;
 use crate::traffic::profile::Profile;
 use crate::util::units::Metre;
 
-/// How far ahead pairs are met.
+/// How far ahead pairs are predicted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Cover {
     /// Until both stand, and ε further.
@@ -52,8 +52,8 @@ pub(super) fn stop(state: &State, profile: &Profile) -> Metre {
     if state.moves() { stopping_distance(state.speed, &profile.brakes) } else { 0.0 }
 }
 
-/// The distance until a road user of this type stands, and ε further. ε is a reserve for braking: one that stands already
-/// reaches no further than its own rectangle.
+/// The distance until a road user of this type stands, and ε further. ε is a reserve for braking: a standing road user reaches
+/// no further than its own rectangle.
 #[inline(always)]
 pub(super) fn reach(state: &State, profile: &Profile, epsilon: Metre) -> Metre {
     if state.moves() { stopping_distance(state.speed, &profile.brakes) + epsilon } else { 0.0 }

@@ -1,4 +1,4 @@
-//! Paths along what was really driven afterwards: laid anew in each step, since a road user's front bumper is on them now.
+//! Paths along the recorded future, rebuilt in each step, since a road user's front bumper is on them now.
 
 use super::Detector;
 use super::reach::User;

@@ -83,8 +83,8 @@ impl StepInputs<'_> {
         self.options.log.pet_below(&|measure| values.of(measure), may_have_pet)
     }
 
-    /// The gap of a pair. One that meets only beyond where both stand has a margin of at least the distance by which one
-    /// would have to go on for that; its gap is as large.
+    /// The gap of a pair. If it meets only beyond where both stand, its margin is at least the distance by which one would have
+    /// to go on; its gap is increased accordingly.
     pub(super) fn gap_beyond(&self, gap: Metre, mu: Metre, slots: [u32; 2], meeting: &ConflictPoint) -> Metre {
         if !self.is_further() {
             return gap;
@@ -214,8 +214,8 @@ impl StepInputs<'_> {
         }
     }
 
-    /// How hard the one brakes that can avoid the collision: the ego, or either where their paths cross. A person stops at once,
-    /// which is no sign of danger.
+    /// How hard the road user brakes that can avoid the collision: the ego, or either where paths cross. A person stops at
+    /// once: not a sign of danger.
     fn evasive_braking(&self, [ego, foe]: [&User; 2], kind: Kind) -> MetrePerSecondSquared {
         let of = |user: &User| if user.category == Category::Vehicle { self.deceleration(user) } else { 0.0 };
         if kind == Kind::RearEnd { of(ego) } else { of(ego).max(of(foe)) }

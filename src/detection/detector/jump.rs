@@ -1,4 +1,4 @@
-//! What is kept of a road user that changes lanes.
+//! The state of a road user that changes lanes.
 
 use crate::detection::path::lanes::LanePath;
 use crate::traffic::roster::UserIndex;

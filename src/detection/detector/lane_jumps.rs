@@ -17,8 +17,8 @@ use crate::util::units::Metre;
 const MOST_JUMP: Metre = 10.0;
 
 impl Detector {
-    /// Notes that a road user has jumped to the side of its path, if it has and road users are moved back. One that was put
-    /// elsewhere is as if it had just entered the scene. One that did not head along its path has not jumped from it.
+    /// Notes that a road user has jumped to the side of its path, if it has and road users are moved back. After being put
+    /// elsewhere it counts as new. If it did not head along its path, it has not jumped from it.
     pub(super) fn take_jump(&mut self, row: u32, user: UserIndex, profile: &Profile, state: &State) {
         let path = &self.paths[user];
         if self.behind() == 0.0 || path.track.is_empty() {
@@ -46,7 +46,7 @@ impl Detector {
         }
     }
 
-    /// Puts one that has jumped back on its former path, for this step.
+    /// Puts a jumping road user back on its former path, for this step.
     pub(super) fn undo_jump(&mut self, jump: &mut Jump, profile: &Profile, state: &mut State) {
         let Jump { row, user, path, heading } = jump;
         let front = path.track.point(path.lines(lines_of(self.net.as_deref())));

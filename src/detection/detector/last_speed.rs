@@ -63,7 +63,7 @@ impl LastSpeed {
     }
 
     /// How long ago it had which speed, that the present one is compared with: the longest within [`SUSTAINED`], or else the
-    /// shortest beyond; of one that has just entered, the longest that is known.
+    /// shortest beyond; just after entering, the longest known.
     fn reference(&self) -> Option<(Second, MetrePerSecond)> {
         let [least, most] = SUSTAINED;
         let known = self.past.iter().copied().filter(|(ago, _)| ago.is_finite());

@@ -1,7 +1,7 @@
-//! Bridges in a net without heights: two ways that cross away from any common junction are on different levels.
+//! Bridges in a net without heights: two paths that cross away from any common junction are on different levels.
 //!
-//! Only what is known to be on a lane has a level: a vehicle that was moved off the road, a person or an obstacle can meet
-//! any other.
+//! Only road users known to be on a lane have a level: a vehicle moved off the road, a person or an obstacle can meet any
+//! other.
 
 use smallvec::SmallVec;
 

@@ -48,8 +48,8 @@ impl Unsettled {
     }
 }
 
-/// Whether two road users can be a pair at all. One of which it is not known where it was meets nothing. Two that stand are a pair only in the
-/// step in which one of them stops: what it ran into on its last metre is a collision.
+/// Whether two road users can be a pair at all. A road user without a known previous position is skipped. Two that stand are a
+/// pair only in the step in which one of them stops: what it ran into on its last metre is a collision.
 fn is_pair([(a, a_state), (b, b_state)]: [(&User, &State); 2], mode: Mode, work: &mut Work) -> bool {
     if [a, b].into_iter().any(|user| user.motion == Motion::Appears) {
         work.not_there_yet += 1;
@@ -260,8 +260,8 @@ impl StepInputs<'_> {
         side::refine(halves, FINE, a, b)
     }
 
-    /// Whether the first of the two is the first of the pair, so that neither ids nor the order of the rows decide anything: the
-    /// faster one, then the one that is behind, then the longer and the wider one. Only of mirror images the order decides.
+    /// Whether the first of the two is the first of the pair, so that neither ids nor the order of the rows decide anything:
+    /// the faster one, then the one behind, then the longer and the wider one. The order decides only between mirror images.
     fn comes_first(&self, [a, b]: [&User; 2]) -> bool {
         let (of_a, of_b) = (self.state(a), self.state(b));
         if of_a.speed != of_b.speed {

@@ -98,7 +98,7 @@ pub struct Detector {
     step: Second,
     /// How far the log's condition looks beyond where both stand; none where it does not.
     look: Option<LookAhead>,
-    /// By slot, the road users as they are met that far ahead; empty where that is none.
+    /// By slot, the road users with reach extended by the look-ahead; empty without one.
     users_further: Vec<User>,
     /// By [`UserIndex`], as long as the road user is in the scene.
     paths: TiVec<UserIndex, LanePath>,
@@ -365,7 +365,7 @@ impl Detector {
         }
     }
 
-    /// The furthest that pairs are met.
+    /// The furthest prediction of pairs.
     fn cover(&self) -> Cover {
         self.look.map_or(Cover::UntilTheyStand, Cover::Further)
     }

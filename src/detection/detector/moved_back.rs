@@ -7,8 +7,8 @@
 //! - along its former path, if it was moved to another lane at the step's end ([`super::jump`]);
 //! - else the arc between both poses, on which a vehicle moves that a script steers.
 //!
-//! No place lies outside. One that was not in the last step, or was put elsewhere since, stays where it was reported. Where it
-//! was at the moment of the others is not known, so that it meets nothing in that step.
+//! No place lies outside. A road user that was not in the last step, or was put elsewhere since, stays where it was reported.
+//! Its place at the others' moment is unknown, so it is skipped in that step.
 
 use super::Detector;
 use super::last_speed::LastSpeed;
@@ -25,13 +25,13 @@ use crate::util::units::{Metre, Radian, Second};
 
 /// A road user that is further beside its path has not come along it, in m; SUMO's narrowest lanes are wider.
 pub(super) const BESIDE: Metre = 0.5;
-/// One that came along its path heads along it, or went at least this part of the straight way along it, less [`ROUNDED`].
+/// A road user that follows its path heads along it, or went at least this part of the straight way along it, less [`ROUNDED`].
 const ALONG: f64 = 0.95;
 /// By how much recorded places are rounded, in m.
 const ROUNDED: Metre = 0.02;
-/// One whose heading differs by more from that of its path does not follow it, in rad: a script steers it.
+/// If its heading differs by more from that of its path, it does not follow it, in rad: a script steers it.
 const ASKEW: Radian = 0.3;
-/// One that turns by more in a step has not driven an arc, in rad: a person turns where it stands.
+/// A larger turn in a step is not an arc, in rad: a person turns where it stands.
 const MOST_TURN: Radian = 1.0;
 
 impl Detector {

@@ -1,4 +1,4 @@
-//! Drops the rear-end pairs of a step that another vehicle is between (see [`super::one_between`]).
+//! Drops a step's rear-end pairs with another vehicle between (see [`super::one_between`]).
 
 use super::one_between::{OneBetween, PathAhead, may_have_one_between};
 use super::{Detector, LEVEL};

@@ -127,8 +127,7 @@ impl StepView<'_> {
         }
     }
 
-    /// A road user that is met further ahead than where it stands, so that it may turn on the way: on its lanes, also
-    /// where it stands on them.
+    /// A road user predicted beyond where it stands, so that it may turn on the way: on its lanes, also if it stands on them.
     pub fn further(&self, user: &User) -> User {
         let has_path = || self.paths.of(user.index).is_some_and(|path| !path.track.is_empty());
         let may_have = match self.turns {

@@ -1,4 +1,4 @@
-//! Which shortcuts a run takes: all but those that the options keep it from.
+//! The shortcuts of a run: all but those that the options disable.
 
 use crate::options::Options;
 use crate::options::shortcut::Shortcut;
@@ -19,7 +19,7 @@ pub struct Shortcuts {
 }
 
 impl Shortcuts {
-    /// All but those that these options keep the run from.
+    /// All but those that these options disable.
     pub fn of(options: &Options) -> Self {
         let shortcuts = |what| !options.no_shortcuts.contains(&what);
         Self {

@@ -33,11 +33,11 @@ pub(super) struct StepInputs<'a> {
     pub speeds: &'a TiSlice<UserIndex, LastSpeed>,
     pub reach: Reach<'a>,
     pub users: &'a [User],
-    /// How far ahead pairs are met.
+    /// How far ahead pairs are predicted.
     pub cover: Cover,
     /// How far the log's condition looks beyond where both stand; none where it does not.
     pub look: Option<LookAhead>,
-    /// The road users as they are met that far ahead; empty where that is none.
+    /// The road users with reach extended by the look-ahead; empty without one.
     pub users_further: &'a [User],
 }
 
@@ -48,7 +48,7 @@ impl StepInputs<'_> {
         Some(Self { cover, reach: self.reach.with(cover), users: self.users_further, ..*self })
     }
 
-    /// Whether pairs are met further ahead than where both stand.
+    /// Whether pairs are predicted beyond where both stand.
     pub(crate) fn is_further(&self) -> bool {
         self.cover != Cover::UntilTheyStand
     }
@@ -58,7 +58,7 @@ impl StepInputs<'_> {
         if further { self.further().unwrap_or(self) } else { self }
     }
 
-    /// Whether the broad phase has compared the areas that pairs are met in.
+    /// Whether the broad phase has compared the areas of pairs.
     pub(crate) fn areas_are_compared(&self) -> bool {
         self.shortcuts.areas_apart && (self.look.is_none() || self.is_further())
     }
@@ -71,7 +71,7 @@ impl StepInputs<'_> {
         self.frame.state(user.row)
     }
 
-    /// The distance until a road user stands, or within which it is met.
+    /// The distance until a road user stands, or its reach.
     #[inline(always)]
     pub fn stop(&self, user: &User) -> Metre {
         self.cover.stop(self.state(user), self.profile(user))

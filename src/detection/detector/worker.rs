@@ -16,7 +16,7 @@ use crate::util::units::{Metre, Second};
 pub(super) struct Worker {
     pub work: Work,
     pub occupancy: OccupancyCache,
-    /// The paths of pairs that are met further ahead than where both stand.
+    /// The paths of pairs that are predicted beyond where both stand.
     pub further: OccupancyCache,
     pub found: Findings,
     /// Road users that are absent from the step.

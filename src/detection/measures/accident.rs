@@ -23,8 +23,8 @@ const HIGHEST: f64 = 30.0;
 /// The time between the lines of two levels, in s.
 const APART: Second = 0.5;
 
-/// The conflicting speed: that of the one that evades by braking, before this step in which it does; that of the faster one if
-/// both do, none if neither does.
+/// The conflicting speed: that of the road user that evades by braking, before this step; the faster one's if both do, none if
+/// neither does.
 pub fn conflicting_speed(
     speeds: [MetrePerSecond; 2],
     accelerations: [MetrePerSecondSquared; 2],
@@ -35,8 +35,7 @@ pub fn conflicting_speed(
 }
 
 /// The deceleration of the vehicle that brakes harder, as far as braking counts as an evasive action; none if neither brakes so
-/// hard. `vehicles` are the accelerations of those of the pair that are vehicles: a person stops at once, which is no sign of
-/// danger.
+/// hard. `vehicles` are the accelerations of the pair's vehicles: that a person stops at once is not a sign of danger.
 pub fn evasive_braking(vehicles: impl Iterator<Item = MetrePerSecondSquared>) -> Option<MetrePerSecondSquared> {
     vehicles.map(|acceleration| -acceleration).filter(|braking| *braking >= BRAKES).reduce(f64::max)
 }

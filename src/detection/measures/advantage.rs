@@ -6,7 +6,7 @@
 //! on a collision course:      TAdv = 0,                           T2 = TTC
 //! ```
 //!
-//! Like the PET, only of paths that cross or merge: not of a follower. None if one of the two stands clear of the other's
+//! Like the PET, only for paths that cross or merge, not for a follower. None if one of the two stands clear of the other's
 //! path, or if the paths do not meet within [`HORIZON`].
 
 use super::driven_path::DrivenPath;
@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn of_two_that_just_miss_it_is_nearly_that_of_a_collision_course() {
-        // The first has left the way of the second, 2 m wide, after 4.5 s.
+        // The first has left the second's path, 2 m wide, after 4.5 s.
         let north = std::f64::consts::FRAC_PI_2;
         for late in [0.05, 0.02] {
             let (a, b) = (poses((0.0, 0.0), 0.0, 10.0, 0.0), poses((40.0, -46.0 - 10.0 * late), north, 10.0, 0.0));

@@ -248,7 +248,7 @@ mod tests {
             let soon = time_to_collision(&motion(&ego), &motion(&foe)).filter(|ttc| *ttc < 5.0).filter(is_of_kind);
             let found = soon.and_then(|_| found_of(kind, &ego, &foe));
             let Some((drac, ttc)) = found.filter(|(drac, _)| (0.5..LIMIT).contains(drac)) else { continue };
-            // One that brakes a little too little touches a leader after 2 TTC; one that turns may come by twice.
+            // With slightly too little braking it touches a leader after 2 TTC; when turning it may come by twice.
             let soon = if kind == Kind::Side { 1.2 } else { 2.5 };
             let until = if curvature == 0.0 { 2.0 * HORIZON } else { soon * ttc };
             let both_brake = drac < alone_of(&ego, &foe, ttc);

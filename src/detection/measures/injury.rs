@@ -1,5 +1,5 @@
-//! The probability of a fatal injury of the one that is worse off in a collision: of those in a vehicle from its ΔV, of those that
-//! nothing protects from the speed of the impact.
+//! The probability that the worse-off road user of a collision is fatally injured: in a vehicle from its ΔV, unprotected from
+//! the speed of the impact.
 
 use crate::detection::kind::Kind;
 use crate::traffic::profile::Profile;

@@ -1,10 +1,10 @@
-//! How a second road user passes the corridor of a first one that has been there: it crosses it, or goes on in it.
+//! How a second road user passes the corridor of an earlier one: it crosses it, or goes on in it.
 //!
 //! It crosses from when it comes into the corridor through the side until it is clear of it. Where the two go on together
 //! before that, on one path, it has crossed until then. What makes them go on together is the path, not an angle: the
-//! middle of the one within the width of the other, until they drive in parallel. One that comes into the corridor from
-//! behind, where the other drove or stood when the record began, goes on in it from there, and what follows is no crossing
-//! before it has been clear of it.
+//! middle of the one within the width of the other, until they drive in parallel. A road user that enters the corridor from
+//! behind, where the other drove or stood when the record began, goes on in it from there. It cannot cross before it has been
+//! clear of it.
 
 use super::corridor::{Corridor, Step};
 use super::driven_path::Course;
@@ -16,9 +16,9 @@ use crate::util::units::{Metre, Radian, Second};
 
 /// Two on one path whose headings differ by less than this drive in parallel, in rad: 5°, more than lanes and tracks sway.
 const PARALLEL: Radian = 0.0873;
-/// How often it is looked where the second is beside the path of the first, in m: a fraction of a width.
+/// The distance between two looks at where the second is beside the first's path, in m: a fraction of a width.
 const OFTEN: Metre = 0.5;
-/// … and at most this often in a step: that of 100 m. One that went further has jumped.
+/// … and at most this often in a step: that of 100 m. A longer step is a jump.
 const MOST_OFTEN: f64 = 200.0;
 /// How often the distance between two looks is halved to find where it joins that path: to 2 cm.
 const HALVES: u32 = 5;
@@ -105,7 +105,7 @@ impl<'a> Track<'a> {
         on
     }
 
-    /// Where a pose is beside the track as far as it was driven before a time.
+    /// Where a pose is beside the part of the track driven before a time.
     fn beside(&self, pose: &Pose, before: Second) -> Beside {
         let poses = &self.course.poses;
         let mut nearest = (f64::INFINITY, Beside { aside: f64::INFINITY, angle: 0.0, is_on: false });
@@ -191,7 +191,7 @@ pub(super) fn crossing(steps: &[Step], first: &Corridor, track: &Track, halves: 
     }
 }
 
-/// The crossing of one that is clear of the corridor again, at a part of a step. It has crossed if it came at an angle, or
+/// The crossing of a road user that is clear of the corridor again, at a part of a step; none unless it came at an angle, or
 /// left on the other side.
 fn cleared(
     under_way: &Crossing,

@@ -6,7 +6,7 @@
 //! corridor; the first leaves it when its rectangle touches what the second covers there for the last time. So the time is
 //! final when the second has crossed, whatever both do afterwards. An articulated vehicle has a corridor of each carriage.
 //!
-//! One that follows the other has none, whatever the bends that both drive through, nor have two that part out of one lane.
+//! A follower has none, whatever the bends that both drive through, nor do two that leave one lane in different directions.
 
 use super::corridor::Corridor;
 use super::driven_path::{DrivenPath, bounds};
@@ -161,7 +161,7 @@ mod tests {
         assert_eq!(pet_of(&course(0.0, 2.0), &course(0.0, 4.0)), None);
     }
 
-    /// What one has driven between two times, later by this much.
+    /// What one has driven between two times, `later` seconds later.
     fn part(of: &DrivenPath, [begin, end]: [f64; 2], later: f64) -> DrivenPath {
         let mut part = DrivenPath::new(4.0, 2.0);
         for pose in &of.courses()[0].poses[..] {

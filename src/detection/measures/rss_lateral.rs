@@ -19,7 +19,7 @@ pub const BRAKING: MetrePerSecondSquared = 0.8;
 /// Lateral margin m, in m.
 pub const MARGIN: Metre = 0.1;
 
-/// The safe lateral distance in m of two with these lateral speeds towards each other, below 0 for one that moves away.
+/// The safe lateral distance in m of two with these lateral speeds towards each other, below 0 when moving away.
 pub fn lateral(speeds: [MetrePerSecond; 2]) -> Metre {
     let approach = speeds.map(|speed| {
         let then = speed + RESPONSE * ACCELERATION;
@@ -35,7 +35,7 @@ mod tests {
 
     #[test]
     fn the_lateral_distance_is_that_of_the_formula() {
-        // 0.1 m + 0.1 m + 0.2²/1.6 m of one that stands, 1.5 m + 0.1 m + 1.7²/1.6 m of the other.
+        // 0.1 m + 0.1 m + 0.2²/1.6 m of the standing one, 1.5 m + 0.1 m + 1.7²/1.6 m of the other.
         assert!((lateral([0.0, 1.5]) - (0.1 + 0.125 + 1.6 + 1.80625)).abs() < 1e-12);
         assert_eq!(lateral([0.0, -3.0]), 0.0);
     }

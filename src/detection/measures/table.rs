@@ -1,4 +1,4 @@
-//! The table of measures: a row for each of which an event keeps one value of all its steps.
+//! The table of measures: a row for each that an event reduces to one value over its steps.
 //!
 //! A new measure is its formula, in a file beside this one, and a row of [`chosen_measures`](crate::chosen_measures). The
 //! option `measures`, the values of steps and events, the log's column, Parquet, Python and the tables of the docs follow

@@ -1,4 +1,4 @@
-//! Required longitudinal and lateral acceleration, and the threat numbers that they are of what is available: BTN and STN
+//! Required longitudinal and lateral acceleration, and their threat numbers, shares of the available acceleration: BTN and STN
 //! (Jansson 2005; Brännström, Sjöberg and Coelingh 2008).
 //!
 //! A follower needs this constant deceleration behind a leader that goes on braking with b until it stands:

@@ -155,8 +155,8 @@ pub fn time_to_collision(a: &SteadyMotion, b: &SteadyMotion) -> Option<Second> {
 
 /// Whether two road users that both brake with this deceleration touch before they stand.
 pub(super) fn touch_while_braking(a: &SteadyMotion, b: &SteadyMotion, deceleration: MetrePerSecondSquared) -> bool {
-    /// Within each of these parts of the time both keep their speeds: the distance of one that brakes from 30 m/s is then
-    /// wrong by 2 cm at most.
+    /// Within each of these parts of the time both keep their speeds: braking from 30 m/s, the distance is then wrong by 2 cm
+    /// at most.
     const PARTS: u32 = 64;
     let stand = (a.speed.max(b.speed) / deceleration).min(2.0 * HORIZON);
     let both_at = |time| PairAt { time, a: a.braked(time, deceleration), b: b.braked(time, deceleration) };

@@ -25,8 +25,8 @@ pub struct PaperResult {
     pub distance: Metre,
 }
 
-/// Kind and distance by fig. 5. The ego is the one that has the other ahead of it; if both or neither have, the faster
-/// one, and at equal speeds the first.
+/// Kind and distance by fig. 5. The ego has the other ahead of it. If both or neither do, it is the faster one; at equal
+/// speeds, the first.
 pub fn measure(a: &Participant, b: &Participant, bounds: KindBounds) -> PaperResult {
     let between = b.rectangle.centre - a.rectangle.centre;
     let a_ahead = between.dot(&a.rectangle.axis) > 0.0;

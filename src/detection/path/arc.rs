@@ -22,7 +22,7 @@ pub fn poses(front: Point, axis: Vector, curvature: f64, length: Metre, distance
     let lead = (curvature * length / 2.0).clamp(-1.0, 1.0).asin();
     let tangent = rotated(&axis, lead);
     let centre = front + left_of(&tangent) / curvature;
-    // The corners are no further from the centre than this; between two poses each cuts its own circle.
+    // The corners are at most this far from the centre; between two poses each cuts its own circle.
     let widest = largest_turn(1.0 / curvature.abs() + length);
     let mut last = 0.0;
     for &distance in distances {

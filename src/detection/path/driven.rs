@@ -1,4 +1,4 @@
-//! Path along the places to which a road user really drove afterwards: only a recording knows them.
+//! Path along the places where a road user really drove afterwards, from a recording.
 //!
 //! The line runs through places of the front bumper that are at least `SPACING` apart, and through where it is now. Noise
 //! below that, and a road user that stands, therefore make no knots. Beyond the last place that is known, the line goes

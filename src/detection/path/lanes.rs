@@ -25,7 +25,7 @@ use crate::util::units::{Metre, MetrePerSecond, Second};
 const SPARE: Metre = 30.0;
 /// Lanes further behind the rear bumper than this are removed, in m.
 pub(crate) const KEPT_BEHIND: Metre = 5.0;
-/// A rear that is straight behind by this much more than on a lane is on no lane, in m.
+/// A rear that fits straight behind better than a lane by this is on no lane, in m.
 const BEND: Metre = 0.1;
 
 /// The path of one road user along its lanes.
@@ -337,9 +337,9 @@ fn leads_to_a_lane(net: &Net, lane: LaneIndex, towards_higher_lanes: MetrePerSec
     if towards_higher_lanes > 0.0 { lane.index + 1 < last } else { lane.index > 0 }
 }
 
-/// The lanes behind that of the front bumper, nearest first, as far as [`KEPT_BEHIND`] behind the rear bumper. Of several
-/// that lead here, it came over the one that is nearest to the rear of the part whose heading is known, or over none if it stands
-/// straight: SUMO has inserted it before the lane's begin. Further behind, it came over the one that its route has passed.
+/// The lanes behind that of the front bumper, nearest first, as far as [`KEPT_BEHIND`] behind the rear bumper. Of several that
+/// lead here, it came over the nearest to the rear of the part whose heading is known, or over none if it stands straight: SUMO
+/// has inserted it before the lane's begin. Further behind, its route decides.
 fn lanes_behind(
     net: &Net,
     lane: LaneIndex,

@@ -1,5 +1,5 @@
 //! A line beside the lanes' centre line: the path of a road user that keeps to one side or changes lanes. Its metres are
-//! those of the centre line: SUMO advances along the lane, so that one on the outer side of a bend is the faster.
+//! those of the centre line: SUMO advances along the lane, so a vehicle on the outer side of a bend is faster.
 
 use crate::geometry::polylines::Lines;
 use crate::geometry::{Point, Vector, left_of};

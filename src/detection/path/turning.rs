@@ -6,15 +6,15 @@
 //! κ = Σ(s − s̄)(h − h̄) / Σ(s − s̄)²
 //! ```
 //!
-//! Headings are measured with noise, and a curve that noise alone explains is none: the path is straight unless |κ| is
+//! Headings are measured with noise, and a curve that noise alone explains does not count: the path is straight unless |κ| is
 //! above three standard errors. With n states and the sum R of squared residuals
 //!
 //! ```text
 //! error² = (R + σ₀²) / (n − 1) / Σ(s − s̄)²
 //! ```
 //!
-//! σ₀ is what is known of the noise before any residual is: a prior of one observation, without which two states would
-//! fit any circle. Of exact states R is 0, so that the error soon vanishes.
+//! σ₀ is the noise assumed before any residual is known: a prior of one observation, without which two states would fit any
+//! circle. For exact states R is 0, so that the error soon vanishes.
 
 use std::collections::VecDeque;
 

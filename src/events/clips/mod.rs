@@ -1,8 +1,7 @@
 //! Clips: where the road users around a severe conflict were, from some seconds before its worst moment until some after.
 //!
-//! That a conflict is severe is known only when it is under way. So all road users of the last seconds are kept
-//! ([`recent`]), and from them, once an event is severe enough, those near its pair are copied ([`take`]) until its clip is
-//! whole.
+//! Whether a conflict is severe is known only while it lasts. So all road users of the last seconds are kept ([`recent`]), and
+//! from them, once an event is severe enough, those near its pair are copied ([`take`]) until its clip is whole.
 
 mod clip;
 mod recent;

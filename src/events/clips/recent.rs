@@ -1,5 +1,4 @@
-//! Where all road users were in the last seconds, and which pairs were in conflict: what a clip shows from before it was
-//! known that there would be one.
+//! Where all road users were in the last seconds, and which pairs were in conflict: what a clip shows from before its conflict.
 
 use std::collections::VecDeque;
 
@@ -67,7 +66,7 @@ impl Recent {
         }
         let oldest = frame.time - BEFORE - APART;
         self.left.drain(..self.left.partition_point(|left| left.time < oldest));
-        // The memory of one that is over is used again.
+        // Reuse the memory of a past step.
         let mut over = self.steps.drain(..self.steps.partition_point(|step| step.time < oldest));
         let mut step = over.next().unwrap_or_default();
         drop(over);

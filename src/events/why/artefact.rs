@@ -1,4 +1,4 @@
-//! What is SUMO's or a tracker's making, not traffic's: what would be set aside by someone who watched it.
+//! What SUMO or a tracker makes, not traffic: an observer would set it aside.
 //!
 //! SUMO's drivers know distances along their lanes, the links that are foes of theirs, and nothing of how lanes are drawn. So
 //! rectangles may overlap where no driver had to notice anything. What appears, stops or jumps within one step was not driven
@@ -23,7 +23,7 @@ const UNBRAKED: MetrePerSecondSquared = 2.5;
 const AFTER_A_STOP: Second = 2.0;
 /// A road user turns by no more than a radian in this distance, in m: the turning circle of a small car has 9 to 10 m.
 const TURNS_IN: Metre = 2.5;
-/// A smaller turn is no jump, in rad.
+/// A smaller turn is not a jump, in rad.
 const LEAST_TURN: Radian = 0.35;
 /// Of two that touch while one follows the other, headings differ by less in any bend that vehicles drive, in rad: on the
 /// smallest turning circle, 9 m across, a car of 5 m turns by this over its length.
@@ -34,7 +34,7 @@ const CONTRADICTS: MetrePerSecond = 2.0;
 const SWAYS: Radian = 1.0;
 /// A tracked heading that changes by less from half a second to the next is steady, in rad.
 const STEADY: Radian = 0.05;
-/// One that swerves turns back up to twice, whatever the angle; one whose heading sways turns back more often.
+/// A swerving road user turns back up to twice, whatever the angle; a swaying heading does so more often.
 const SWERVES: usize = 2;
 /// Two whose speeds differ by less than this go along with each other, in m/s.
 const ALIKE: MetrePerSecond = 1.0;
@@ -117,7 +117,7 @@ fn is_mistracked(pair: &Pair, party: &Party) -> bool {
     party.category != Category::Obstacle && (contradicts || sways)
 }
 
-/// Whether a person goes along with one who rides: most likely one road user that was tracked twice.
+/// Whether a person goes along with a rider: most likely one road user that was tracked twice.
 fn rides_along(pair: &Pair) -> bool {
     pair.both().into_iter().any(|(person, rider)| {
         person.category == Category::Person
@@ -148,8 +148,8 @@ fn is_not_hit(net: &Net, person: &Party, vehicle: &Party) -> bool {
     person.is_off_the_road(net) || vehicle.speed < STANDS
 }
 
-/// Whether one meets the one that it follows head-on, or overlaps it in a bend that no vehicle can drive, as where a lane is
-/// folded: SUMO keeps them apart along the lane.
+/// Whether one meets its leader head-on, or overlaps it in a bend that no vehicle can drive, as where a lane is folded: SUMO
+/// keeps them apart along the lane.
 fn is_folded(net: &Net, pair: &Pair) -> bool {
     let [Some(ego), Some(foe)] = [&pair.ego, &pair.foe].map(|party| party.course.at(0.0)) else { return false };
     let follows = ego == foe || net.follows(ego, foe) || net.follows(foe, ego);
@@ -174,8 +174,8 @@ fn are_unrelated(net: &Net, pair: &Pair) -> bool {
     is_known && !of_ego.iter().any(|one| of_foe.iter().any(|other| relates(*one, *other)))
 }
 
-/// Whether one stands inside a junction and the other, which takes another way, passes it without braking. One that comes to
-/// its rear, on the lane behind the junction's, does not pass it.
+/// Whether one stands inside a junction and the other, which takes another way, passes it without braking. Coming to its rear,
+/// on the lane behind the junction's, is not passing.
 fn waits_inside(net: &Net, waits: &Party, passes: &Party) -> bool {
     let Some(lane) = waits.course.at(0.0).filter(|lane| waits.speed < STANDS && net.is_internal(*lane)) else {
         return false;

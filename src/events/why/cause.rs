@@ -16,7 +16,7 @@ pub enum Cause {
     RanRed,
     /// One drove into the junction on amber although it could have stopped.
     LateAmber,
-    /// One that had to yield drove on.
+    /// One drove on although it had to yield.
     DidNotYield,
     /// One changed lanes into that of the other.
     ChangedLane,
@@ -24,7 +24,7 @@ pub enum Cause {
     Overtook,
     /// A person walked across outside a crossing.
     OutsideCrossing,
-    /// An obstacle stood in the way, or a vehicle because of a stop.
+    /// An obstacle stood in the way, or a vehicle at a scheduled stop.
     Stood,
     /// A queue ended where the line of sight to it left the road.
     BehindCurve,
@@ -34,7 +34,7 @@ pub enum Cause {
     TooClose,
     /// One drove faster than its lane allows.
     TooFast,
-    /// One had just been put there by SUMO: an artefact.
+    /// One was just inserted by SUMO (artefact).
     Appeared,
 }
 
@@ -66,7 +66,7 @@ impl Causes {
         Self(self.0 & entry.0)
     }
 
-    /// The same where, besides, one of the two stood because of a stop.
+    /// The same where, besides, one of the two stood at a scheduled stop.
     pub(crate) fn with_stops(mut self, manoeuvre: Option<Manoeuvre>) -> Self {
         self.add_if(Cause::Stood, true);
         self.plausible_for(manoeuvre)
@@ -78,7 +78,7 @@ impl Causes {
             Cause::ChangedLane => matches!(manoeuvre, Some(Manoeuvre::CutIn | Manoeuvre::LaneChange)),
             Cause::Overtook => manoeuvre == Some(Manoeuvre::OvertakingOncoming),
             Cause::OutsideCrossing => manoeuvre == Some(Manoeuvre::PersonCrossing),
-            // A vehicle that stands because of a stop is not the end of a queue.
+            // A vehicle at a scheduled stop is not the end of a queue.
             Cause::BehindCurve => manoeuvre == Some(Manoeuvre::Following) && !self.has(Cause::Stood),
             Cause::LeaderBraked => {
                 matches!(manoeuvre, None | Some(Manoeuvre::Following | Manoeuvre::CutIn | Manoeuvre::LaneChange))

@@ -11,7 +11,7 @@ use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
 /// A driver who sees amber and can stop with [`COMFORTABLE`] after this, has to, in s (ITE's change interval).
 const SEES_AMBER: Second = 1.0;
-/// One that crosses behind another after less than this did not let it go first, in s; our choice.
+/// Crossing behind another after less than this is not letting it go first, in s; our choice.
 const LETS_GO_FIRST: Second = 0.5;
 /// The deceleration for which a change interval is made, in m/s²: 10 ft/s² (ITE).
 const COMFORTABLE: MetrePerSecondSquared = 3.05;
@@ -21,7 +21,7 @@ const TOO_FAST: f64 = 1.1;
 const TOO_FAST_BY: MetrePerSecond = 0.894;
 /// A headway below this is too short, in s: half of half the speedometer's reading in metres, fined in Germany (BKatV no. 12).
 const SHORTEST_HEADWAY: Second = 0.9;
-/// One that closes in faster than this approaches, it does not follow, in m/s.
+/// Closing in faster than this is approaching, not following, in m/s.
 const APPROACHES: MetrePerSecond = 2.0;
 /// Slower than this, distances are those of a queue, in m/s.
 const QUEUE: MetrePerSecond = 3.0;
@@ -74,7 +74,7 @@ fn comes_to_queue(pair: &Pair, manoeuvre: Option<Manoeuvre>) -> bool {
 /// A road user and its way through the junction.
 type Entrant<'a> = (&'a Party, &'a Passage);
 
-/// What a traffic light shows to one that passes it: the letter, since how long, and how fast it is.
+/// What a traffic light shows a passing vehicle: the letter, since how long, and the vehicle's speed.
 struct Shown {
     letter: u8,
     lasts: Second,

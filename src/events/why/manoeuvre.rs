@@ -39,11 +39,11 @@ pub enum Manoeuvre {
     SideBySide,
     /// Two lanes become one, and both drive straight on.
     Merge,
-    /// Their ways cross, and neither of them turns across the other's direction.
+    /// Their paths cross; neither turns across the other's direction.
     Crossing,
-    /// One turns left across the way of one that comes towards it, or drives beside it.
+    /// One turns left across the other's path, which comes towards it or runs beside it.
     LeftTurnAcross,
-    /// The same to the right.
+    /// One turns right across the other's path.
     RightTurnAcross,
     /// One turns into the road that the other drives on.
     TurnInto,

@@ -1,7 +1,7 @@
 //! What the two of a conflict were doing, and why it came about.
 //!
 //! Evaluated in the steps in which an event gets worse, and in each step of frontal and side conflicts. The manoeuvre is that
-//! of the step with the smallest margin; a cause holds for the conflict if it holds in one that was the worst until then, and
+//! of the step with the smallest margin; a cause holds for the conflict if it holds in a step that was the worst so far, and
 //! how one entered a junction in any step.
 
 mod artefact;
@@ -31,7 +31,7 @@ pub(super) struct Why {
     /// None where it is not known.
     pub manoeuvre: Option<Manoeuvre>,
     pub causes: Causes,
-    /// Why the one that changed lanes did so, where that is a cause and known.
+    /// SUMO's reason for the lane change, where that is a cause and known.
     pub lane_change_reason: Option<LaneChangeReason>,
     /// The lanes that the ego and the foe are on.
     pub lanes: [Option<LaneIndex>; 2],

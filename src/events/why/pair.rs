@@ -24,7 +24,7 @@ const KERB: Metre = 2.0;
 /// A person may be this far beside a pavement or a crossing, in m.
 const BESIDE: Metre = 0.3;
 
-/// One that is slower than this stands, in m/s: what SUMO takes for halting.
+/// Standing is slower than this, in m/s: SUMO's limit for halting.
 pub const STANDS: MetrePerSecond = 0.1;
 
 /// What is known of a step besides the road users' states.
@@ -38,7 +38,7 @@ pub struct Surroundings<'a> {
     pub step: Second,
     /// What the traffic lights show, where that is known.
     pub signals: &'a Signals,
-    /// Those of `Tracker::standing` that stand because of a stop.
+    /// The vehicles of `Tracker::standing` at a scheduled stop.
     pub stopped: &'a [UserIndex],
     /// The path of the front bumper of a row's road user, from where it is.
     pub path: &'a dyn Fn(u32) -> Vec<Point>,

@@ -6,10 +6,10 @@ use super::pair::{Pair, Party, edge_of};
 use crate::traffic::net::{Net, Passage};
 use crate::util::units::MetrePerSecondSquared;
 
-/// A driver who has to wait brakes by up to this, in m/s²: SUMO's default of cars, and a little that steps add.
+/// A waiting driver brakes by up to this, in m/s²: SUMO's default of cars, and a little that steps add.
 const ORDINARY: MetrePerSecondSquared = 5.0;
 
-/// Whether one of the two will wait for the other. Of two that are on one edge none does: the one follows the other.
+/// Whether one of the two will wait for the other. On the same edge neither does: the one follows the other.
 pub(in crate::events) fn one_will_wait(pair: &Pair) -> bool {
     let (Some(net), Some([ego, foe])) = (pair.around.net, pair.passages) else { return false };
     let edges = [&pair.ego, &pair.foe].map(|party| party.course.at(0.0).map(|lane| edge_of(net, lane)));

@@ -49,7 +49,7 @@ const UNBOUNDED: &str = "holds for pairs however far ahead they meet; join it by
                          \"margin < 0\" or \"ttc < 5\"";
 
 impl Comparison {
-    /// That of the default.
+    /// The default comparison.
     pub const MARGIN: Self = Self { measure: Measure::Margin, operator: Operator::Below, value: 0.0 };
 
     /// How far ahead the pairs that meet it have to be looked for; an error says why no distance is enough.
@@ -72,7 +72,7 @@ impl Comparison {
             (Measure::Drac | Measure::CrashProbability | Measure::ExtendedDeltaV, false) | (Measure::Ttb, true) => {
                 Ok(LookAhead { seconds: Second::INFINITY, ..LookAhead::NONE })
             }
-            // Two that overlap now are always met.
+            // Current overlaps are always found.
             (Measure::Overlap, false) if operator.holds(0.0, value) => Err(UNBOUNDED.into()),
             (Measure::Overlap, false) => Ok(LookAhead::NONE),
             _ => Err(UNBOUNDED.into()),

@@ -3,12 +3,12 @@
 use crate::braking::rss;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
-/// The longest PET that a condition may ask for, in s: so long the places of all road users are kept.
+/// The longest PET that a condition may ask for, in s: all places are kept that long.
 pub(super) const LONGEST_PET: Second = 60.0;
 /// The longest PET that is looked for where no condition asks for a longer one, in s.
 pub(super) const USUAL_PET: Second = 5.0;
-/// How a road user may speed up within the PET that is looked for, in m/s²: SUMO's `accel` of cars, rounded up. Without it,
-/// one that still waits when the other leaves would be missed.
+/// How a road user may speed up within the PET that is looked for, in m/s²: SUMO's `accel` of cars, rounded up. Without it, a
+/// road user still waiting when the other leaves would be missed.
 const SPEEDS_UP: MetrePerSecondSquared = 3.0;
 /// The speed at which two distances ahead are compared, in m/s; any is valid.
 const COMPARED_AT: MetrePerSecond = 14.0;
@@ -37,8 +37,8 @@ impl LookAhead {
         *self == Self::NONE
     }
 
-    /// How far ahead of a road user with this speed, which would stand after `stop` m, another is met. One that stands is
-    /// met where it stands, or where it may be within the PET.
+    /// How far ahead a road user with this speed is predicted, which would stand after `stop` m. If it stands: where it is, or
+    /// may be within the PET.
     pub fn distance(&self, speed: MetrePerSecond, stop: Metre, horizon: Second) -> Metre {
         let Self { metres, seconds, response, pet, rss } = *self;
         let stop = if rss { stop.max(rss::stopping_distance(speed)) } else { stop };
@@ -59,7 +59,7 @@ impl LookAhead {
         }
     }
 
-    /// The one that looks less far.
+    /// The shorter look-ahead.
     pub(super) fn nearer(self, other: Self) -> Self {
         let far = |look: &Self| look.distance(COMPARED_AT, 0.0, Second::INFINITY);
         if far(&other) < far(&self) { other } else { self }

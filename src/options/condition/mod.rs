@@ -58,7 +58,7 @@ impl Condition {
         self.tree.needs_pet()
     }
 
-    /// The longest PET that is looked for: 5 s, or as long as it asks for.
+    /// The longest PET that is looked for: 5 s, or the condition's own.
     pub(crate) fn longest_pet(&self) -> Second {
         self.tree.longest_pet().max(USUAL_PET)
     }

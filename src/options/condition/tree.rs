@@ -55,7 +55,7 @@ impl Tree {
         }
     }
 
-    /// Of parts that all have to hold, the one that looks least far is enough.
+    /// If all parts have to hold, the shortest look-ahead is enough.
     pub fn look_ahead(&self) -> Result<LookAhead, String> {
         match self {
             Self::Compare(comparison) => comparison.look_ahead().map_err(|why| format!("\"{self}\" {why}")),

@@ -75,8 +75,7 @@ impl Net {
         self.edges[self.lanes[lane].edge].function
     }
 
-    /// Whether one has to yield that takes the first of these ways, both through one junction, to one that takes the other,
-    /// and not the other way round.
+    /// Whether `one` must yield to `to`, both through one junction, and not the other way round.
     pub fn yields(&self, one: &Passage, to: &Passage) -> bool {
         let junction = &self.junctions[one.junction as usize];
         one.junction == to.junction && junction.yields(one.link, to.link) && !junction.yields(to.link, one.link)

@@ -3,7 +3,7 @@
 //! SUMO's drivers know distances along their lanes, and at a junction the links that cross or merge with theirs: its
 //! `foes`. They do not know how far lanes are apart. So two lanes are independent if they are
 //!
-//! - within one junction and no foes of each other, or
+//! - within one junction and not each other's foes, or
 //! - elsewhere, of different edges, and neither cross nor have one common end (with both in common, one is drawn on the
 //!   other, as tracks are on roads);
 //!

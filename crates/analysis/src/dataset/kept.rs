@@ -7,7 +7,7 @@ use closecall_run::output::schema::LoggedConflict;
 
 /// The most conflicts that are kept.
 pub const MOST: usize = 300_000;
-/// So many more wait until they are sorted out together: a conflict takes more than a kilobyte.
+/// Conflicts beyond that are sorted out in batches of this size: each takes over a kilobyte.
 const WAITING: usize = MOST / 8;
 
 /// A conflict, and the run that it is of.

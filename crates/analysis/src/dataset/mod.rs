@@ -1,4 +1,4 @@
-//! The conflicts of several logs, and their net: what a report or a picture is made of.
+//! The conflicts of several logs, and their net: the input of a report or a picture.
 
 pub(crate) mod kept;
 mod logs;

@@ -13,7 +13,7 @@ use closecall_run::output::summary::{Exposure, SetAside, in_words};
 
 pub use place::Place;
 
-/// Which conflicts count: those that meet each of its parts. An empty part is met by all.
+/// Which conflicts count: those that match every part. An empty part matches all.
 #[derive(Clone, Debug, Default, PartialEq, clap::Args)]
 #[command(next_help_heading = "Filter: which conflicts count (several values: a,b)")]
 pub struct ConflictFilter {
@@ -42,7 +42,7 @@ pub struct ConflictFilter {
     /// May be given several times.
     #[arg(long = "where", value_name = "PLACE")]
     pub places: Vec<Place>,
-    /// Also those that are SUMO's or a tracker's making, not traffic's.
+    /// Also artefacts, made by SUMO or a tracker, not traffic.
     #[arg(long)]
     pub artefacts: bool,
 }
@@ -56,7 +56,7 @@ pub(crate) fn set_aside_in_words(set_aside: &SetAside) -> Option<String> {
     in_words(set_aside).map(|words| format!("{words} (--artefacts counts them in)"))
 }
 
-/// Whether one of these is met, or there are none.
+/// Whether one of these matches, or none is set.
 fn any<T>(wanted: &[T], is_met: impl Fn(&T) -> bool) -> bool {
     wanted.is_empty() || wanted.iter().any(is_met)
 }
@@ -83,7 +83,7 @@ impl ConflictFilter {
         self.artefacts || conflict.artefact.is_empty()
     }
 
-    /// The same; one that does not count is added to those set aside.
+    /// The same; if it does not count, it is added to those set aside.
     pub(crate) fn sets_aside(&self, conflict: &LoggedConflict, set_aside: &mut SetAside) -> bool {
         let counts = self.counts(conflict);
         if !counts {

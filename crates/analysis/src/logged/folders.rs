@@ -37,8 +37,7 @@ pub fn log_folders(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(known.into_iter().map(|(_, folder)| folder).collect())
 }
 
-/// Checks that an output is written over none of the files that it is made of: those of the logs in these folders, and the
-/// net.
+/// Checks that an output does not overwrite its own inputs: the files of the logs in these folders, and the net.
 ///
 /// # Errors
 /// Those of [`log_folders`]; [`Error::WouldReplace`] that names the file.

@@ -210,7 +210,7 @@ impl ParquetLog {
     }
 }
 
-/// What stands in a row for a column that is not read.
+/// A row's value in a column that is not read.
 fn unread(column: &Column) -> Value<'static> {
     match (column.presence, column.column_type) {
         (Presence::Required, ColumnType::Number) => Value::Number(f64::NAN),

@@ -1,8 +1,8 @@
-//! What changes in the picture of a clip: by itself, or as it stands at one time of the clip.
+//! The moving parts of a clip's picture: animated, or at one time of the clip.
 //!
-//! By itself it plays through SVG's own animation (SMIL), which browsers play without a script: values at the times of a clip,
-//! in an endless loop. The loop is real time, but it halts for a second at the worst step and another at the end. A still of each
-//! time makes a film.
+//! The animation is SVG's own (SMIL), which browsers play without a script: values at the times of a clip, in an endless loop.
+//! The loop is real time, but it halts for a second at the worst step and another at the end. A still of each time makes a
+//! film.
 
 use std::fmt::Write;
 

@@ -76,7 +76,7 @@ impl Playback {
         Show { net: net_file.as_deref(), clip, kind, severity, time, at: [x, y], paths }
     }
 
-    /// The predicted paths of both at the worst step, from the front bumper; empty for one that stands.
+    /// The predicted paths of both at the worst step, from the front bumper; empty if standing.
     pub(super) fn paths(&self) -> [Vec<Point>; 2] {
         let LoggedConflict { ego_x, ego_y, ego_path, foe_x, foe_y, foe_path, .. } = &self.conflict;
         [(ego_x, ego_y, ego_path), (foe_x, foe_y, foe_path)].map(|(x, y, path)| {

@@ -1,7 +1,7 @@
 //! A clip as an animated SVG, or as the stills of a film: the roads, the road users as rectangles, the predicted paths, and the
 //! time left as a bar.
 //!
-//! No script and nothing from outside, so that it plays wherever a picture may stand, also in a README.
+//! No script and nothing from outside, so that it plays wherever pictures are shown, also in a README.
 
 use std::fmt::Write;
 

@@ -1,5 +1,5 @@
-//! With which part each of the two of a conflict touches the other: where they overlap at the worst step, or would first
-//! touch if both keep their speeds along their paths from there.
+//! Which parts of two road users touch: where they overlap at the worst step, or would first touch if both keep their speeds
+//! along their paths from there.
 
 use closecall::detection::measures::ttc::{SteadyMotion, time_to_collision};
 use closecall::detection::path::Pose;
@@ -110,7 +110,7 @@ mod tests {
         assert_eq!(parts_of(ego, [20.0, -20.0, NORTH, 11.0], ""), Some([Front, Left]), "one from the right");
         assert_eq!(parts_of(ego, [3.0, -8.0, NORTH, 12.0], ""), Some([Right, Front]), "one that hits the flank");
         assert_eq!(parts_of(ego, [-4.0, -1.9, WEST, 1.0], ""), Some([Right, Right]), "one beside it");
-        assert_eq!(parts_of(ego, [30.0, 20.0, -NORTH, 0.0], ""), None, "one that is not in the way");
+        assert_eq!(parts_of(ego, [30.0, 20.0, -NORTH, 0.0], ""), None, "one elsewhere");
         let turns = "30.00 4.00 20.00 0.00 10.00 0.00";
         assert_eq!(parts_of(ego, [30.0, 12.0, -NORTH, 8.0], turns), Some([Front, Front]), "one that turns towards it");
     }

@@ -23,8 +23,8 @@ const DRAWN: usize = 2_000;
 /// The number column that nothing on the page shows.
 const NOT_SHOWN: &str = "clearance";
 
-/// All of the page's data. It contains no `<`: the data stands in a script, which it must not end. The columns are text as soon as
-/// they are made, one after the other, since a number of a row takes four times its size as a value of JSON.
+/// All of the page's data. It contains no `<`, which could end the script around it. Each column becomes text at once, because
+/// a JSON value takes four times the memory of a number.
 ///
 /// # Errors
 /// Those of reading the clips.

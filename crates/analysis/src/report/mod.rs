@@ -65,7 +65,7 @@ pub struct Made {
     pub lost: Vec<LostRows>,
 }
 
-/// What a report is made of.
+/// The inputs of a report.
 #[derive(Clone, Debug)]
 pub struct Request<'a> {
     /// Logs, or folders of logs.

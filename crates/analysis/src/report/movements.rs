@@ -1,6 +1,5 @@
-//! From where to where the two of a conflict went through its junction, for the page's movement diagrams, and which of them had
-//! to yield: by the lanes that the log names and, where several ways lead on, by the predicted path. Without a net only the
-//! edges' names are known.
+//! The movements of a conflict's road users through its junction, for the page's diagrams, and which had to yield: from the
+//! lanes in the log and, where several ways lead on, from the predicted path. Without a net only the edges' names are known.
 
 use std::collections::BTreeMap;
 

@@ -143,7 +143,7 @@ fn rate_difference(
     }
 }
 
-/// How the risk index differs. Without a spread over runs it has no interval, because it is no count.
+/// How the risk index differs. Without a spread over runs it has no interval, because it is not a count.
 fn risk_difference(sets: [&Collection; 2], traffic: &[Vec<f64>; 2], pairs: Option<&[usize]>) -> RateDifference {
     let sums = sets.map(|set| set.risk.per_run(set.runs.len()));
     let row = rate_difference("risk_index", sums, traffic, pairs);

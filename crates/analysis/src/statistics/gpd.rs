@@ -1,7 +1,7 @@
 //! The generalised Pareto distribution of excesses over a threshold: maximum likelihood and goodness of fit.
 //!
-//! Of an excess that reaches a bound only that much is known: it is censored there. No crate offers the fit. With θ = ξ/σ,
-//! m excesses below the bound and k at it, the likelihood's maximum over ξ has a closed form,
+//! An excess that reaches a bound is censored there. No crate offers the fit. With θ = ξ/σ, m excesses below the bound and k at
+//! it, the likelihood's maximum over ξ has a closed form,
 //!
 //! ```text
 //! ξ(θ) = ( Σ ln(1 + θ y) + k ln(1 + θ bound) ) / m
@@ -135,7 +135,7 @@ impl<'a> Excesses<'a> {
         [self.within.iter().map(|y| (theta * y).ln_1p()).sum(), censored]
     }
 
-    /// Σ ln(1 + θ y) / θ over all; at θ = 0 their sum. Of an exponential distribution it is the scale times m.
+    /// Σ ln(1 + θ y) / θ over all; at θ = 0 their sum. For an exponential distribution: the scale times m.
     pub fn slope(&self, theta: f64) -> f64 {
         if theta == 0.0 {
             let censored = if self.censored > 0.0 { self.censored * self.bound } else { 0.0 };

@@ -1,4 +1,4 @@
-//! What a sample of excesses says of the crash frequency: the posterior of Jeffreys' prior, as three quantiles.
+//! The crash frequency from a sample of excesses: the posterior of Jeffreys' prior, as three quantiles.
 //!
 //! The prior of the generalised Pareto distribution is 1 / (σ (1 + ξ) √(1 + 2ξ)) with ξ > −1/2 (Castellanos and Cabras 2007,
 //! *A default Bayesian procedure for the generalized Pareto distribution*), that of the number of excesses Λ^(−1/2). The
@@ -34,7 +34,7 @@ const NUMBERS: usize = 32;
 /// The places of σ and Λ are shifted from θ to θ, by this many parts of their distance: so all of them together are dense.
 const SHIFTS: usize = 16;
 
-/// The 2.5, 50 and 97.5 % quantiles of the frequency of excesses of at least `threshold`, from these in so many hours.
+/// The 2.5, 50 and 97.5 % quantiles of the frequency of excesses of at least `threshold`, from a sample of `hours`.
 pub(crate) fn crash_frequency(excesses: Excesses, threshold: f64, hours: f64) -> Option<[f64; 3]> {
     let count = excesses.within.len() as f64;
     let theta = |place: f64| place.exp_m1() / excesses.most;

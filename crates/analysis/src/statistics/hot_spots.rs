@@ -20,7 +20,7 @@ pub struct HotSpot {
     pub serious: u64,
     /// The number of critical ones.
     pub critical: u64,
-    /// The sum of the crash probabilities: compares places, and is no number of crashes.
+    /// The sum of the crash probabilities: compares places; not a number of crashes.
     pub risk_index: Option<Rate>,
     /// The same per 1,000 vehicles that entered; of junctions, where all runs have counted them.
     pub risk_index_per_1000_entering: Option<Rate>,

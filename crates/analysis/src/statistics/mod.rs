@@ -67,7 +67,7 @@ pub struct Request {
     pub worst: usize,
     /// The ratio of rates for which runs are to be planned.
     pub plan: Option<f64>,
-    /// The crashes observed where the runs to compare with were made of.
+    /// The crashes observed in reality for the runs to compare with.
     pub observed: Option<Observed>,
 }
 
@@ -100,8 +100,8 @@ pub struct Statistics {
     pub by: By,
     /// For each variant all conflicts as one group, then each group.
     pub groups: Vec<GroupStatistics>,
-    /// The sum of crash probabilities per vehicle-kilometre, of runs of one variant: compares plans with the same steps, and
-    /// is no number of crashes.
+    /// The sum of crash probabilities per vehicle-kilometre, of runs of one variant: compares plans with the same steps; not a
+    /// number of crashes.
     pub risk_index_per_vehicle_kilometre: Option<Rate>,
     /// Edges with the largest risk index.
     pub edges: Vec<HotSpot>,

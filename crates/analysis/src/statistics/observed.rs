@@ -1,10 +1,10 @@
-//! Crashes in one set of runs, from those observed in reality where the other set was made of.
+//! Crashes in one set of runs, from those observed in reality for the other set.
 //!
-//! Simulated conflicts tell no number of crashes, but the ratio of conflicts of two plans can be applied to a number that
-//! was observed: crashes of B per year = crashes of A per year · (conflicts of B / conflicts of A)ᵖ. The crashes of A are
-//! Poisson; with Jeffreys' prior their frequency is gamma distributed with shape k + ½ and the years as rate (the Gamma–Poisson
-//! model: Hauer 1997, *Observational Before–After Studies in Road Safety*). The ratio is lognormal with the width of its own interval. The power p
-//! is 1 unless crashes grow otherwise than conflicts, which nothing here can tell: 0.5 and 1.5 show how much it matters.
+//! Simulated conflicts do not give a number of crashes, but the ratio of two plans' conflicts can be applied to an observed
+//! number: crashes of B per year = crashes of A per year · (conflicts of B / conflicts of A)ᵖ. The crashes of A are Poisson;
+//! with Jeffreys' prior their frequency is gamma distributed with shape k + ½ and the years as rate (the Gamma–Poisson model:
+//! Hauer 1997, *Observational Before–After Studies in Road Safety*). The ratio is lognormal with the width of its own interval.
+//! The power p is 1 unless crashes and conflicts grow differently, which is unknown here: 0.5 and 1.5 show how much it matters.
 
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Gamma, Normal};

@@ -129,7 +129,7 @@ fn runs_needed(ratio: f64, variance: f64) -> Option<usize> {
     Some(high)
 }
 
-/// Plans the comparison of a set with another, or with one that is like it.
+/// Plans the comparison of a set with another, or with a similar one.
 pub(super) fn plan(ratio: f64, first: &Collection, other: Option<&Collection>) -> RunPlan {
     let sets = [Some(first), other].into_iter().flatten().collect::<Vec<_>>();
     let runs = sets.iter().map(|set| set.runs.iter().collect::<Vec<_>>()).collect::<Vec<_>>();

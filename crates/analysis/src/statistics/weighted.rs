@@ -52,7 +52,7 @@ impl WeightedEvents {
         Some(self.of_events()?.times(1.0 / traffic.iter().sum::<f64>()))
     }
 
-    /// The sum of each of so many runs.
+    /// The sum of each run.
     pub(crate) fn per_run(&self, runs: usize) -> Vec<f64> {
         let mut sums = vec![0.0; runs];
         self.per_run.iter().for_each(|(run, sum)| sums[*run as usize] += sum);

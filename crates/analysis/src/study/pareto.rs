@@ -1,4 +1,4 @@
-//! Which choices no other beats.
+//! The choices that no other beats.
 
 /// Run times whose ratio is smaller are equal: repeated medians differ by about this.
 const SAME_TIME: f64 = 1.05;

@@ -41,7 +41,7 @@ pub struct LogOptions {
     /// Types of the SUMO polygons that are static obstacles.
     #[arg(long, value_name = "TYPE,…", value_delimiter = ',')]
     pub obstacles: Vec<String>,
-    /// Report only conflicts on the edges, lanes and junctions of this SUMO selection file.
+    /// Log only conflicts on the edges, lanes and junctions of this SUMO selection file.
     #[arg(long, value_name = "FILE")]
     pub filter: Option<PathBuf>,
     /// Count traffic and log conflicts only after this time from the begin, in s.
@@ -54,8 +54,8 @@ pub struct LogOptions {
     #[arg(long, hide = true)]
     #[serde(skip)]
     pub log_encounters: bool,
-    /// Keep where the road users were around each conflict of at least this severity, in clips.jsonl.gz: `closecall clip`
-    /// and `closecall show` play it.
+    /// Record the road users around each conflict of at least this severity in clips.jsonl.gz: `closecall clip` and `closecall
+    /// show` play it.
     #[arg(long, value_enum, value_name = "SEVERITY", default_value_t)]
     #[serde(skip_serializing_if = "ClipLevel::is_default")]
     pub log_clips: ClipLevel,

@@ -1,7 +1,7 @@
 //! `clips.jsonl.gz`: where the road users around severe conflicts were, a line of JSON for each conflict that has a clip.
 //!
-//! It is compressed because the numbers of a clip, some thousands, resemble each other. Like other files that are no rows it
-//! appears when the run ends, whole; a run without clips has none.
+//! It is compressed because the thousands of numbers in a clip resemble each other. Like other files without rows, it appears
+//! whole when the run ends, if there are clips.
 
 use std::io::{BufWriter, Write};
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! `net_faults.csv`: the pairs of lanes at which SUMO drives road users through each other, for whoever mends the net.
+//! `net_faults.csv`: the pairs of lanes at which SUMO drives road users through each other, to help mend the net.
 
 use std::path::Path;
 
@@ -20,7 +20,7 @@ pub enum FaultKind {
     OnFoot,
     /// A vehicle waits inside a junction where others pass.
     WaitsInside,
-    /// Two links of one junction are no foes of each other.
+    /// Two links of one junction are not each other's foes.
     NotFoes,
     /// Two lanes have room beside each other, and vehicles are wider than they are.
     NarrowLane,
@@ -74,7 +74,7 @@ pub struct NetFault {
     pub junction: String,
     /// Why it happens.
     pub fault: FaultKind,
-    /// How often it happens: one that stands counts once, however many pass it.
+    /// How often it happens: a standing road user counts once, however many pass it.
     pub times: u64,
     /// The conflicts in the log.
     pub conflicts: u64,

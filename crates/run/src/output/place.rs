@@ -16,8 +16,8 @@ pub(super) fn junction_of(lane: &str) -> &str {
     within.and_then(|edge| edge.rsplit_once('_')).map_or("", |(junction, _)| junction)
 }
 
-/// The lane of a road user that is here: the one that is known, or else the nearest; with how far along it the road user is,
-/// in SUMO's metres of the lane to the last digit.
+/// A road user's lane, the known one or else the nearest, and its position along it, in SUMO's metres of the lane to the last
+/// digit.
 pub(super) fn on_lane(net: &Net, known: Option<LaneIndex>, front: Point) -> Option<(&str, Metre)> {
     let lane = known.or_else(|| net.lane_at(front))?;
     let (line, drawn) = (net.lines.line(lane.0), net.lines.length(lane.0));

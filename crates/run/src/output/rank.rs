@@ -7,8 +7,8 @@ use closecall::detection::kind::Severity;
 use closecall::events::Conflict;
 use closecall::util::units::{Metre, MetrePerSecond, Second};
 
-/// How bad a conflict is; the larger, the worse. One that is none of traffic's is least. A collision is worst; of two, the one with the larger ΔV. Of others the
-/// severity decides, then the crash probability, then the TTC, then the margin.
+/// How bad a conflict is; the larger, the worse. Artefacts come last, collisions first, by ΔV. Between others the severity
+/// decides, then the crash probability, then the TTC, then the margin.
 #[derive(Clone, Copy, Debug)]
 pub struct Rank {
     is_traffic: bool,

@@ -1,5 +1,5 @@
-//! The columns of the series, `series.csv` or `series.parquet`, which has a row per step of each conflict: the number of the conflict, then those columns
-//! of the log that a single step has.
+//! The columns of the series, `series.csv` or `series.parquet`, which has a row per step of each conflict: the number of the
+//! conflict, then the log's columns that a single step has.
 
 use super::schema::{COLUMNS, Column};
 use closecall::options::measures::Measures;

@@ -26,12 +26,12 @@ pub struct Summary {
     pub end: Second,
     /// Steps that were checked; 0 in the `run.json` of a run that was killed or still goes on.
     pub steps: u64,
-    /// All logged conflicts, by kind and severity; those that are set aside by why they are.
+    /// All logged conflicts, by kind and severity; those set aside by reason.
     pub conflicts: Vec<Count>,
     /// Conflicts in which the two rectangles overlapped.
     pub collisions: u64,
-    /// The sum of all crash probabilities: compares plans with the same steps, and is no number of crashes. Earlier versions
-    /// called it `expected_crashes`.
+    /// The sum of all crash probabilities: compares plans with the same steps; not a number of crashes. Earlier versions called
+    /// it `expected_crashes`.
     #[serde(default, alias = "expected_crashes")]
     pub risk_index: f64,
     /// The collisions that SUMO itself reported; none where it was not asked.
@@ -186,7 +186,7 @@ impl fmt::Display for Skipped {
 }
 
 impl Summary {
-    /// Counts a conflict; one that is none of traffic's only with `counts_artefacts`.
+    /// Counts a conflict; an artefact only with `counts_artefacts`.
     pub fn add(&mut self, conflict: &Conflict, counts_artefacts: bool) {
         let Conflict { kind, severity, .. } = *conflict;
         let artefact = conflict.artefact.filter(|_| !counts_artefacts);
@@ -268,7 +268,7 @@ impl fmt::Display for Summary {
         }
         writeln!(
             f,
-            "risk index {:.2}: the sum of all crash probabilities, to compare plans with; no number of crashes",
+            "risk index {:.2}: the sum of all crash probabilities, to compare plans with; not a number of crashes",
             self.risk_index
         )?;
         let Exposure { vehicles, persons, vehicle_kilometres, .. } = self.exposure;

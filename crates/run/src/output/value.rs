@@ -49,7 +49,7 @@ impl ColumnType {
 }
 
 impl<'a> Value<'a> {
-    /// A number of a log. One that is not finite would compare with nothing in every quantile that follows.
+    /// A number of a log. It is finite, since infinite values and NaN would spoil every quantile that follows.
     ///
     /// # Errors
     /// That it is not finite.

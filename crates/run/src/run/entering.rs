@@ -1,4 +1,4 @@
-//! How many vehicles enter each junction: what the conflicts there are seen against.
+//! How many vehicles enter each junction, to relate its conflicts to.
 
 use std::collections::BTreeMap;
 

@@ -68,7 +68,7 @@ pub struct Run {
     collided: Option<Vec<[String; 2]>>,
     /// What the traffic lights show; empty where that is not known.
     signals: Signals,
-    /// The vehicles that stand because of a stop, of those of [`Run::standing`].
+    /// The vehicles of [`Run::standing`] at a scheduled stop.
     stopped: Vec<UserIndex>,
     /// The edges of persons, of those of [`Run::persons_in_conflict`].
     edges: Vec<(UserIndex, EdgeIndex)>,
@@ -200,7 +200,7 @@ impl Run {
         self.tracker.standing().filter(|user| self.frame.row_of(*user).is_some()).collect()
     }
 
-    /// States that one of [`Run::standing`] stands because of a stop, and does not park off the road.
+    /// States that one of [`Run::standing`] is at a scheduled stop, and does not park off the road.
     pub fn set_stopped(&mut self, user: UserIndex) {
         self.stopped.push(user);
     }

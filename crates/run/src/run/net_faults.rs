@@ -25,7 +25,7 @@ pub(super) struct NetFaults {
 #[derive(Default)]
 struct Overlaps {
     conflicts: u64,
-    /// One that stands alone, or the two that passed each other.
+    /// A single standing road user, or two that passed each other.
     times: FxHashSet<[EcoString; 2]>,
     road_users: FxHashSet<EcoString>,
     overlap: Metre,

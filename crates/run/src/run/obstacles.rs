@@ -12,7 +12,7 @@ impl Run {
     /// A static obstacle enters the scene and stays: a polygon of this type and outline.
     ///
     /// # Errors
-    /// [`Error::Value`] if the outline has too few or too many points, or one that is beyond all places.
+    /// [`Error::Value`] if the outline has too few or too many points, or one out of range.
     pub fn enter_obstacle(&mut self, id: &str, polygon_type: &str, outline: &[Point]) -> Result<()> {
         let user = self.enter_shape(id, polygon_type, outline)?;
         self.obstacles.push((user, outline[0]));

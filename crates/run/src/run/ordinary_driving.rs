@@ -1,5 +1,4 @@
-//! Conflicts that the simulation itself makes of ordinary driving: of how closely its drivers follow, and of how hard they can
-//! brake.
+//! Conflicts that the simulation makes of ordinary driving: by how closely its drivers follow, and how hard they can brake.
 
 use typed_index_collections::{TiSlice, TiVec};
 

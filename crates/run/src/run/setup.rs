@@ -1,4 +1,4 @@
-//! What is stated of a run before its first step, and asked of it then.
+//! What is set before a run's first step, and what can be asked then.
 
 use super::Run;
 use crate::output::formats::Outputs;

@@ -56,8 +56,8 @@ impl Run {
     /// The second half of [`Run::step`]: both phases, the events and the log. `on_part_end` is called after each part.
     ///
     /// # Errors
-    /// [`Error::Step`] if a road user is where none can be, or too many are in one place; [`Error::File`] that names an
-    /// output that cannot be written, once: the steps after that one are checked, and nothing more is written.
+    /// [`Error::Step`] if a road user's state is impossible, or too many are in one place; [`Error::File`] that names an output
+    /// that cannot be written, once: the steps after that one are checked, and nothing more is written.
     pub fn finish_step(&mut self, mut on_part_end: impl FnMut(StepPart)) -> Result<()> {
         if let Some((user, why)) = self.frame.impossible() {
             return Err(Error::step(self.frame.time, format!("\"{}\": {why}", self.roster.id(*user))));

@@ -1,5 +1,5 @@
-//! On which lanes two road users touch: those under the parts of them that come nearest to each other. The front bumper's lane
-//! is often another one, as the tail of a bus is still in the junction.
+//! On which lanes two road users touch: those under their nearest parts. The front bumper's lane is often another one: the tail
+//! of a bus may still be in the junction.
 
 use closecall::detection::path::Foot;
 use closecall::events::{Conflict, Snapshot};

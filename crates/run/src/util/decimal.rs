@@ -1,4 +1,4 @@
-//! Numbers as text with a fixed number of decimals: the same bytes as `{:.6}`, several times as fast.
+//! Numbers as text with a fixed number of decimals: the same bytes as `{:.6}`, several times faster.
 //!
 //! The crates for this (ryu, dtoa and what builds on them) write as many digits as a number needs; rounding those once
 //! more is not rounding the number.
@@ -9,7 +9,7 @@ use std::fmt::{self, Write};
 const TENS: [f64; 7] = [1.0, 10.0, 100.0, 1e3, 1e4, 1e5, 1e6];
 /// In units of the last decimal, what is smaller than this is known to 2⁻¹⁰ of one.
 const LARGEST: f64 = (1_u64 << 43) as f64;
-/// Whoever is nearer than this to the middle between two decimals may lie on its other side.
+/// Values closer than this to the middle between two decimals may lie on its other side.
 const IN_DOUBT: f64 = 1.0 / 512.0;
 /// Room for the digits below [`LARGEST`] and a point.
 const DIGITS: usize = 16;

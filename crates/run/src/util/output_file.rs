@@ -105,7 +105,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     file.finish()
 }
 
-/// Checks that a folder that is written into is not a link to one that is elsewhere.
+/// Checks that an output folder is not a link to another folder.
 ///
 /// # Errors
 /// [`Error::Content`] that names it.

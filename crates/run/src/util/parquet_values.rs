@@ -35,7 +35,7 @@ pub(super) enum Meaning {
     Half,
     Signed,
     Unsigned,
-    /// Whole numbers with so many decimals.
+    /// Whole numbers with this many decimals.
     Decimal(u32),
 }
 

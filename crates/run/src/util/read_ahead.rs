@@ -1,4 +1,4 @@
-//! A source that a thread of its own reads ahead: what it takes to unpack a file then passes while the reader is busy.
+//! A source that a thread of its own reads ahead: a file is then unpacked while the reader is busy.
 
 use std::io::{BufRead, Error, ErrorKind, Read, Result};
 use std::sync::mpsc::{Receiver, sync_channel};

@@ -173,7 +173,7 @@ fn of_tail(of: Process, tail: Gpd, conflicts: u32, samples: usize) -> Case {
     })
 }
 
-/// A tail that is no generalised Pareto distribution: a Weibull one of shape 1.3, which tends to ξ = 0 slowly.
+/// A tail that is not generalised Pareto: a Weibull one of shape 1.3, which tends to ξ = 0 slowly.
 fn of_weibull(conflicts: u32, samples: usize) -> Case {
     const SCALE: f64 = 0.25;
     const SHAPE: f64 = 1.3;

@@ -1,4 +1,4 @@
-//! One method on one known process, and what a sample of it told.
+//! One method on one known process, and its result on a sample.
 
 use crate::reference::chance::Chance;
 

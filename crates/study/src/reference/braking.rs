@@ -21,8 +21,8 @@ fn phases(braking: &Braking, at_once: bool) -> Vec<Phase> {
     late_phases(&LateBraking { speed, present: 0.0, build_up, deceleration: brakes.deceleration }, Some(response))
 }
 
-/// The phases of one that goes on with its present deceleration for a wait, or for ever, and then brakes fully. The last
-/// one is its standstill, if it ever stands.
+/// The phases of a vehicle that keeps its present deceleration for a wait, or for ever, and then brakes fully. If it stops, its
+/// standstill is the last one.
 fn late_phases(braking: &LateBraking, wait: Option<f64>) -> Vec<Phase> {
     let zero = || precise(0.0);
     let two = || precise(2.0);
@@ -111,7 +111,7 @@ fn rest(phases: &[Phase]) -> BigFloat {
     phases.last().map_or(precise(0.0), |last| last.cubic[0].clone())
 }
 
-/// The distance until one that brakes late, or never, stands, in m; 0 if it never does.
+/// The stopping distance of a vehicle that brakes late or never, in m; 0 if it never stops.
 pub(crate) fn late_distance(braking: &LateBraking, wait: Option<f64>) -> BigFloat {
     rest(&late_phases(braking, wait))
 }
@@ -122,7 +122,7 @@ pub(crate) fn late_distance_at(braking: &LateBraking, wait: Option<f64>, time: f
     distance
 }
 
-/// The least room behind a leader that one that brakes late, or never, ever has, in m: below 0 where they touch.
+/// The least room behind its leader of a vehicle that brakes late or never, in m: below 0 where they touch.
 pub(crate) fn least_room_behind(leader: &Leader, braking: &LateBraking, wait: Option<f64>) -> BigFloat {
     let Leader { room, speed, deceleration } = *leader;
     let ahead = LateBraking { speed, present: deceleration, build_up: 0.0, deceleration };

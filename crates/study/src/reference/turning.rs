@@ -1,5 +1,5 @@
-//! Where a road user that drives on a circle first touches the area that another covers on a circle of its own: both ways
-//! are halved until what lies between cannot hide a contact.
+//! Where a road user that drives on a circle first touches the area that another covers on a circle of its own: both paths are
+//! halved until no contact can hide in between.
 //!
 //! A pose is the chord from the rear to the front bumper, both on the circle.
 

@@ -120,7 +120,7 @@ fn check(chance: &mut Chance, pair: &MuInputs, tally: &mut Tally) {
         for (model, property) in [(MuModel::Minimal, MINIMAL), (MuModel::AtRest, AT_REST), (MuModel::Paper, PAPER)] {
             let expected = reference::mu(model, ego, foe, pair.sigma, pair.epsilon);
             tally.compare(property, pair.mu(model), &expected, pair);
-            // The printed formula is made of other distances.
+            // The printed formula uses other distances.
             if model != MuModel::Paper {
                 let off = deviation(pair.mu(model), &expected).absolute;
                 tally.error(OF_DISTANCES, off / (distances * f64::EPSILON).max(LEAST_SIZE), &(pair, model));

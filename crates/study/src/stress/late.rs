@@ -1,8 +1,8 @@
 //! Time left and time to brake: motions that are put back into the definition, in high precision.
 //!
 //! What is found is a time, and near a contact that only just happens it is ill-conditioned: a time that is wrong by little
-//! may belong to a room that differs by less than rounding. So errors are those of the room that the time leads to, in units
-//! in the last place of the distances that it is made of.
+//! may belong to a room that differs by less than rounding. So errors are those of the room that the time leads to, in units in
+//! the last place of its distances.
 
 use super::braking::{MuInputs, extreme, usual};
 use super::case::Case;
@@ -20,7 +20,7 @@ const LEFT_GROWS: Property = Property::always("more gap, less speed, more brakin
 const BEHIND: Property = Property::within("room used up behind a leader, in ulps of the distances", ULPS, Unit::Ulps);
 const AT: Property = Property::within("distance kept at a time, in ulps of the distances", ULPS, Unit::Ulps);
 const TOWARDS: Property =
-    Property::within("room used up towards one that comes, in ulps of the distances", ULPS, Unit::Ulps);
+    Property::within("room used up towards oncoming traffic, in ulps of the distances", ULPS, Unit::Ulps);
 const GROWS: Property = Property::always("more room, less speed, more braking: never less wait");
 
 pub(super) const CASES: &[Case] = &[
@@ -36,7 +36,7 @@ pub(super) const CASES: &[Case] = &[
         let (braking, leader) = (usual_late(chance), usual_leader(chance));
         check_behind(chance, &braking, &leader, tally);
     }),
-    Case::new(Group::Late, "behind one that is as fast or brakes alike", |chance, tally| {
+    Case::new(Group::Late, "behind a leader as fast or braking alike", |chance, tally| {
         let (braking, leader) = (usual_late(chance), usual_leader(chance));
         let speeds = [leader.speed, braking.speed, braking.speed * (1.0 + f64::EPSILON)];
         let decelerations = [leader.deceleration, braking.deceleration, braking.present, 0.0];
@@ -168,8 +168,8 @@ fn wait(found: Second) -> Option<Second> {
     (found < f64::INFINITY).then_some(found.max(0.0))
 }
 
-/// The error of a longest wait that leads to a room, in units in the last place of `travelled`: no room is left, and none is lacking. For a
-/// wait that may last for ever only the latter counts, and for one that is too long already only the former.
+/// The error of a longest wait that leads to a room, in units in the last place of `travelled`: no room is left, and none is
+/// lacking. For an endless wait only the latter counts, for a wait already too long only the former.
 fn error(wait: Second, room: &BigFloat, travelled: &BigFloat) -> f64 {
     if wait.is_nan() || *travelled == BigFloat::ZERO {
         return if wait.is_nan() { f64::INFINITY } else { 0.0 };

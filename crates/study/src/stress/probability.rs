@@ -17,7 +17,7 @@ const LATE: Property = Property::within("response later than a time", 1e-13, Uni
 const CRASH: Property = Property::within("crash probability", 1e-3, Unit::Absolute);
 const CRASH_OF_ANY: Property = Property::within("crash probability", 1e-2, Unit::Absolute);
 /// The weakest sufficient deceleration is found to a hundred-thousandth of its range.
-const BRAKES: Property = Property::within("crash probability of one that brakes", 1e-5, Unit::Absolute);
+const BRAKES: Property = Property::within("crash probability of a braking driver", 1e-5, Unit::Absolute);
 const INJURY: Property = Property::within("injury probability", 1e-13, Unit::Relative);
 const CERTAIN: Property = Property::always("between 0 and 1");
 const CRASH_GROWS: Property = Property::always("less room, more speed: never less crash probability");

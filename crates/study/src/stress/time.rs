@@ -211,7 +211,7 @@ fn is_finite(steps: &[[State; 2]]) -> bool {
     scene.finite && scene.finish().iter().all(finite)
 }
 
-/// The number of conflicts of two cars, one of which leaves and returns elsewhere under the same id.
+/// The number of conflicts of two cars if one leaves and returns elsewhere under the same id.
 fn twice(away: Second) -> Option<usize> {
     let mut scene = CarRun::new(None).ok()?;
     let leader = scene.enter("leader");

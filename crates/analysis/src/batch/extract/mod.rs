@@ -1,11 +1,10 @@
-//! `closecall extract`: one conflict of a run as a scenario of its own, in which it happens again: in SUMO (here), or as the
-//! log's clip in ASAM's formats (`clip.rs`).
+//! `closecall extract`: one conflict of a run as a standalone scenario: in SUMO (here), or as the log's clip in ASAM's formats
+//! (`clip.rs`).
 //!
-//! The shortest way there is a state that SUMO saves some seconds before: with all digits and the states of the random
-//! numbers it mostly goes on exactly, if no route files are read beside it, for which SUMO would draw random numbers again. A state
-//! does not hold everything, though. So the conflict is looked for in a run from the state, and where it is another one
-//! there, the scenario begins where the run did. The net stays whole: SUMO draws the random numbers of drivers by the places
-//! of lanes in the net, so that a part of it would have other drivers.
+//! The shortest scenario starts from a state that SUMO saves some seconds before. With all digits and random states, SUMO
+//! mostly continues exactly, unless it reads route files, for which it draws random numbers again. A state does not hold
+//! everything, so the conflict is checked in a run from it; if it differs, the scenario begins where the run did. The net stays
+//! whole: SUMO draws drivers' random numbers by the places of lanes in the net, so a part of it would have other drivers.
 
 mod clip;
 mod configuration;

@@ -29,7 +29,7 @@ pub struct Fingerprint {
 }
 
 impl Fingerprint {
-    /// Reads the parts of a file; one that is not XML has none.
+    /// Reads the parts of a file; empty if it is not XML.
     ///
     /// # Errors
     /// [`closecall_run::Error::File`] where it cannot be read.

@@ -57,7 +57,7 @@ pub struct SeedSummary {
     pub seed: u32,
     /// Steps that were checked.
     pub steps: u64,
-    /// Conflicts by kind and severity; those that are set aside by why they are.
+    /// Conflicts by kind and severity; those set aside by reason.
     pub conflicts: Vec<Count>,
     /// Conflicts in which the two rectangles overlapped.
     pub collisions: u64,

@@ -32,7 +32,7 @@ function showFigures(rows) {
   const runs = data.runs.filter((_, run) => (filter.run === null || filter.run === run) && (filter.variant === null || filter.variant === variantOf[run]));
   const kilometres = runs.reduce((sum, run) => sum + (run.summary?.exposure.vehicle_kilometres || 0), 0);
   const of_all = all > crashes + 0.005 ? `of ${number(all, 1)} in all; ` : "";
-  const figures = hasRisk ? [["risk index", number(crashes, crashes < 10 ? 2 : 1), `${of_all}the sum of the probabilities that a driver brakes too late: compares places and plans, no number of crashes`]] : [];
+  const figures = hasRisk ? [["risk index", number(crashes, crashes < 10 ? 2 : 1), `${of_all}the sum of the probabilities that a driver brakes too late: compares places and plans, not a number of crashes`]] : [];
   [2, 1, 0].forEach((severity) => {
     if (filter.severities[severity]) figures.push([SEVERITIES[severity], number(counts[severity]), "", SEVERITIES[severity]]);
   });
@@ -59,7 +59,7 @@ function showVerdict(rows) {
   const element = byId("verdict");
   if (!spots.length) {
     element.textContent = !rows.length ? "No conflict passes the filter."
-      : hasRisk ? "The conflicts that are shown have no risk index." : "";
+      : hasRisk ? "The conflicts shown have no risk index." : "";
     return;
   }
   const all = rows.reduce((sum, row) => sum + risk[row], 0);

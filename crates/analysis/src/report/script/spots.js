@@ -143,7 +143,7 @@ function enteringByPlace() {
   // Of a period only the conflicts are known, not the traffic.
   if (Number.isFinite(filter.from) || Number.isFinite(filter.to)) return entered;
   const runs = data.runs.filter((_, run) => (filter.run === null || filter.run === run) && (filter.variant === null || filter.variant === variantOf[run]));
-  // A run of an earlier version, or one that was killed, has no such counts.
+  // Runs of earlier versions and killed runs have no such counts.
   if (!runs.every((run) => run.summary?.steps > 0 && run.summary.entered)) return entered;
   for (const run of runs) {
     for (const [junction, vehicles] of Object.entries(run.summary.entered)) {

@@ -29,7 +29,7 @@ function deed(row, ego, foe) {
     return `${moving(ego, speeds[0])} came too close to ${near}${other(foe, speeds[1])}`;
   }
   const did = (past, would) => (collidedByWorst(row) ? past : `was about to ${would}`);
-  // The one that drives its front into the other; otherwise one that moves.
+  // Whose front hits the other; otherwise a moving one.
   const fronts = [0, 1].filter((who) => parts[who] === 0 && moves[who]);
   const by = fronts.length ? fronts[0] : moves[0] ? 0 : 1;
   const [mover, hit] = [moving(names[by], speeds[by]), other(names[1 - by], speeds[1 - by])];
@@ -62,21 +62,21 @@ function placeWords(row) {
   return spot ? `on ${spot} (lane ${laneId(row)})` : `at x ${number(column.x[row], 1)}, y ${number(column.y[row], 1)}`;
 }
 
-/** What the two did, by the log's name of it; a name that is not here stands as it is. */
+/** What the two did, by its name in the log; other names are shown as they are. */
 const MANOEUVRES = {
   following: "One followed the other.", cut_in: "The foe moved into the ego’s lane.", lane_change: "The ego moved into the foe’s lane.",
-  side_by_side: "They drove side by side.", merge: "Their lanes became one.", crossing: "Their ways crossed.",
-  left_turn_across: "One turned left across the other’s way.", right_turn_across: "One turned right across the other’s way.",
+  side_by_side: "They drove side by side.", merge: "Their lanes became one.", crossing: "Their paths crossed.",
+  left_turn_across: "One turned left across the other’s path.", right_turn_across: "One turned right across the other’s path.",
   turn_into: "One turned into the road that the other took.", overtaking_oncoming: "One drove against its lane, towards the other.",
-  head_on: "They drove towards each other, each on its own way.", person_crossing: "A person was crossing the vehicle’s way.",
-  person_along: "A person walked along the vehicle’s way.", person_standing: "A person stood in the vehicle’s way.", object: "An obstacle was in the way.",
+  head_on: "They drove towards each other, each on its own path.", person_crossing: "A person was crossing the vehicle’s path.",
+  person_along: "A person walked along the vehicle’s path.", person_standing: "A person stood in the vehicle’s way.", object: "An obstacle was in the way.",
 };
 /** What happens often at a place, in the same way. */
 const OFTEN = {
   following: "one behind the other", cut_in: "vehicles that cut in", lane_change: "vehicles that change lanes", side_by_side: "vehicles side by side",
-  merge: "lanes that become one", crossing: "ways that cross", left_turn_across: "left turns across the way of others",
-  right_turn_across: "right turns across the way of others", turn_into: "turns into the road of others", overtaking_oncoming: "overtaking against oncoming traffic",
-  head_on: "oncoming traffic", person_crossing: "persons who cross in front of vehicles", person_along: "persons along the way of vehicles",
+  merge: "lanes that become one", crossing: "crossing paths", left_turn_across: "left turns across the path of others",
+  right_turn_across: "right turns across the path of others", turn_into: "turns into the road of others", overtaking_oncoming: "overtaking against oncoming traffic",
+  head_on: "oncoming traffic", person_crossing: "persons who cross in front of vehicles", person_along: "persons along the path of vehicles",
   person_standing: "persons in the way of vehicles", object: "obstacles in the way",
 };
 /** Why it came about, in the same way. */
@@ -119,7 +119,7 @@ function storyOf(row) {
   const foe = typed(foeId(row), column.foe_type[row]);
   const sentences = [`At ${number(value("time"), 1)} s ${placeWords(row)}, ${deed(row, ego, foe)}.`];
   // The kind is that of the angle, whichever parts touch.
-  if (value("kind") > 0) sentences.push(`Their ways met at ${Math.round((value("angle") * 180) / Math.PI)}°: a ${KINDS[value("kind")]} conflict.`);
+  if (value("kind") > 0) sentences.push(`Their paths met at ${Math.round((value("angle") * 180) / Math.PI)}°: a ${KINDS[value("kind")]} conflict.`);
   const manoeuvre = manoeuvreOf(row);
   if (manoeuvre) sentences.push(MANOEUVRES[manoeuvre] || `Manoeuvre: ${inWords(manoeuvre)}.`);
   const causes = causeNames(row);
@@ -142,7 +142,7 @@ function storyOf(row) {
 /** The measures of a conflict as sentences. */
 function figuresOf(row) {
   const value = (name) => column[name][row];
-  const sentences = [`At the worst step the gap, the room that was left on their ways, was ${number(value("gap"), 2)} m, and μ = ${number(value("mu"), 2)} m was needed: a margin of `
+  const sentences = [`At the worst step the gap, the room left on their paths, was ${number(value("gap"), 2)} m, and μ = ${number(value("mu"), 2)} m was needed: a margin of `
     + `${number(value("margin"), 2)} m.`];
   if (!value("collision") && value("ttc") === null) sentences.push("At constant speed they would not have touched.");
   else if (!value("collision")) {

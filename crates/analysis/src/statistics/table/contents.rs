@@ -164,8 +164,7 @@ fn risk(rate: Rate) -> Table {
         columns: vec!["per", "risk index", "low", "high"],
         rows: vec![std::iter::once("vehicle-km".into()).chain(with_interval(Some(rate))).collect()],
         notes: vec![
-            "the sum of crash probabilities: compares plans with the same steps, and is no number of crashes"
-                .to_owned(),
+            "the sum of crash probabilities: compares plans with the same steps; not a number of crashes".to_owned(),
         ],
     }
 }

@@ -48,7 +48,7 @@ pub(super) fn rate_differences(comparison: &Comparison) -> Table {
 
 /// What the last column of compared rates is.
 const DETECTABLE: &str =
-    "found at 80 %: the ratio, or its inverse, that 80 of 100 comparisons of so many runs would find (one test at 5 %)";
+    "found at 80 %: the ratio, or its inverse, that 80 of 100 comparisons of this size would find (one test at 5 %)";
 
 /// The runs that a comparison needs.
 pub(super) fn planned(plan: &RunPlan) -> Table {

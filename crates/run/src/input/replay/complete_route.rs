@@ -1,8 +1,7 @@
-//! The route of a vehicle, from what was seen of it and what is known otherwise.
+//! The route of a vehicle, from its recorded edges, route files and the net.
 //!
-//! What was driven decides. Edges that no step shows are those of the route in a route file, if it leads from one edge seen
-//! to the next, otherwise those of the only shortest connection. A vehicle that is on the route of the file when it is
-//! last seen follows it to its end.
+//! Recorded edges decide. Edges that no step shows come from the route in a route file, if it joins the edges seen, otherwise
+//! from the only shortest connection. A vehicle that is on the route of the file when it is last seen follows it to its end.
 
 use super::connections::{Connections, length};
 use super::drive::{NEVER, Reached};

@@ -1,4 +1,4 @@
-//! What route and additional files tell of the vehicles of a recording: their types and their routes.
+//! The types and routes of a recording's vehicles, from route and additional files.
 
 use std::path::{Path, PathBuf};
 

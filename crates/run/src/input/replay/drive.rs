@@ -62,7 +62,7 @@ impl Drive {
 
     /// Its heading is against its lane, which is on this edge, or in the junction between this edge and `ahead`.
     pub fn against(&mut self, edge: EdgeIndex, ahead: Option<EdgeIndex>, moment: &Moment) {
-        // In a junction it is in a sharp turn if it came from there; an overtaker would be on the way of oncoming traffic.
+        // In a junction it is in a sharp turn if it came from there; an overtaker would be on an oncoming path.
         let came_from_there = self.ahead == Some(edge) || self.reached.last().is_some_and(|last| last.edge == edge);
         if ahead.is_some() && came_from_there {
             return self.along(edge, ahead, moment);

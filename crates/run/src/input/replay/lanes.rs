@@ -1,4 +1,4 @@
-//! Finds the recording's lanes in the net, and how a road user stands to its lane.
+//! Finds the recording's lanes in the net, and a road user's offset from its lane.
 
 use super::recorded_step::RecordedRow;
 use closecall::detection::path::Foot;

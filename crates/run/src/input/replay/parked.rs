@@ -1,4 +1,4 @@
-//! Vehicles parked off the road: SUMO records them, but nothing meets them, as in a live run.
+//! Vehicles parked off the road: recorded by SUMO, but ignored as in a live run.
 
 use super::Replay;
 use super::lanes::distance;

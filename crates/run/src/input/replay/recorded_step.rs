@@ -48,7 +48,7 @@ pub struct RecordedStep {
     pub(super) left_out: LeftOut,
 }
 
-/// What was not taken as it stands in the file, counted.
+/// Counts of data that was changed or left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct LeftOut {
     /// Elements that are neither vehicles nor persons.

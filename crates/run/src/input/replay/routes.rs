@@ -33,7 +33,7 @@ pub struct Routes {
     lists: Lists,
     /// For every vehicle, in the order of arrival, where its route is in `lists`.
     places: SpooledTempFile,
-    /// The vehicle's number for each time that a vehicle enters the scene. One that comes back enters again.
+    /// The vehicle's number for each time that a vehicle enters the scene. A returning vehicle enters again.
     entering: BufReader<SpooledTempFile>,
     /// The number of places where nothing tells which edges were driven.
     pub gaps: u64,
@@ -49,7 +49,7 @@ pub struct Route {
 }
 
 impl Routes {
-    /// Reads the routes of a recording. In one that is cut short, they end there. `stopped` is asked in each step whether to stop.
+    /// Reads the routes of a recording. If it is cut short, they end there. `stopped` is asked in each step whether to stop.
     ///
     /// # Errors
     /// Those of [`Recording`]; [`Error::File`] if a temporary file cannot be written; [`Error::Stopped`].

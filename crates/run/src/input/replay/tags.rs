@@ -1,4 +1,4 @@
-//! The tags of an XML file, found in place: what stands between `<` and `>`.
+//! The tags of an XML file, found in place: the text between `<` and `>`.
 
 use std::path::Path;
 

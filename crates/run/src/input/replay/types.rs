@@ -27,7 +27,7 @@ impl VehicleTypes {
         self.of_users[usize::from(person)].insert(id.into(), name.into());
     }
 
-    /// The type that a file gives to a vehicle or a person. Those of the flow F are named F.0, F.1, ….
+    /// The type that a file gives to a vehicle or a person. A flow F has members F.0, F.1, ….
     pub(crate) fn of_user(&self, id: &str, person: bool) -> Option<&str> {
         let known = &self.of_users[usize::from(person)];
         let flow = || {

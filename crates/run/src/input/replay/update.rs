@@ -1,10 +1,10 @@
-//! Over how long a recorded speed is the mean, as the positions show.
+//! The period over which a recorded speed is the mean, by the positions.
 //!
 //! SUMO's Euler update drives at the speed v₁ of a step's end for the whole step, its ballistic update at (v₀ + v₁)/2. Where
 //! each step of the first is recorded, a vehicle moves by v₁ P in the period P; of the second, by (v₀ + v₁)/2 · P; and where
 //! every k-th step of the first, by (v₀ + v₁)/2 · P + (v₁ − v₀)/2 · P/k if it speeds up evenly. So the difference from the
-//! second tells over how much of the period a speed is the mean: 1, 0, or 1/k of it. The way is that along the lane; where
-//! the place on the lane is not recorded, it is that of a vehicle that drives straight on.
+//! second tells over how much of the period a speed is the mean: 1, 0, or 1/k of it. The distance is along the lane; where the
+//! place on the lane is not recorded, only straight driving counts.
 
 use std::path::Path;
 
@@ -27,7 +27,7 @@ const MOST_ROWS: usize = 200_000;
 const ROUNDED: Metre = 0.02;
 /// The largest number of steps of a simulation between two of its recording.
 const MOST_STEPS: f64 = 20.0;
-/// One whose angle changes by more drives no straight line, in degrees: its arc is longer by less than a ten-thousandth.
+/// A vehicle whose angle changes by more is not driving straight, in degrees: its arc is longer by less than a ten-thousandth.
 const STRAIGHT: f64 = 1.0;
 /// From this share on, the whole period is meant.
 const WHOLE: f64 = 0.75;
@@ -84,8 +84,8 @@ impl Evidence {
         }
     }
 
-    /// Compares the way with the speeds. One that stops or starts may have done so within the period; one that
-    /// drives against its lane or was moved has another way than its speeds tell.
+    /// Compares the distance with the speeds. Stops and starts may lie within the period; after driving against its lane or
+    /// being moved, a vehicle's distance does not match its speeds.
     fn compare(&mut self, row: &RecordedRow, last: &RecordedRow, period: Second) {
         let Some(driven) = driven(last, row) else { return };
         let change = row.speed - last.speed;

@@ -43,7 +43,7 @@ impl Vehicles {
         self.present.get_mut(user as usize)?.as_mut()
     }
 
-    /// Numbers a vehicle that enters; one that comes back has driven already.
+    /// Numbers a vehicle that enters; a returning vehicle keeps its drive.
     pub fn enter(&mut self, user: u32, id: &str) -> &mut Vehicle {
         let vehicle = match self.absent.remove(id) {
             Some(Absent { since, mut vehicle }) => {

@@ -1,5 +1,5 @@
-//! The tracks of a recording, one road user after the other: searched for jumps, smoothed if that is wanted, completed, and put in
-//! the order of time. Smoothing has a part of a track in memory: what is further away does not change a row.
+//! The tracks of a recording, one road user after the other: searched for jumps, smoothed on request, completed, and sorted by
+//! time. Smoothing keeps only part of a track in memory: rows further away have no effect.
 
 use std::io::Result;
 
@@ -17,7 +17,7 @@ use closecall::util::units::{Metre, Second};
 /// Where ids are used again, a road user that is away for longer than this does not come back.
 const AWAY: Second = 5.0;
 
-/// So many rows of a track are smoothed together: a shorter track as a whole.
+/// Rows of a track that are smoothed together; shorter tracks as a whole.
 const PART: usize = 1 << 16;
 /// Rows before and after a part that are smoothed with it. With noise of 0.1 m a row matters for about 0.2 s.
 const AROUND: usize = 1 << 12;

@@ -7,7 +7,7 @@ use super::fcd_row::PEDESTRIAN;
 pub(super) enum Class {
     /// One of SUMO's classes.
     Known(&'static str),
-    /// Things that nobody drives.
+    /// Things without a driver.
     NoRoadUser,
     Unknown,
 }

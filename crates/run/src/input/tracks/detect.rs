@@ -1,4 +1,4 @@
-//! How the first bytes of a file, and the columns of a table, tell the formats of recordings apart.
+//! Detects a recording's format from its first bytes or its columns.
 
 use std::io::Read;
 use std::path::Path;

@@ -119,7 +119,7 @@ impl<'a> FcdWriter<'a> {
         self.fcd.write_all(self.row.as_bytes()).map_err(|error| error.to_string())
     }
 
-    /// What was read otherwise than it stands in the file, as a line.
+    /// A line on values that were read differently from the file.
     pub fn remarks(&self) -> Option<String> {
         said_of_noise(self.below_zero)
     }

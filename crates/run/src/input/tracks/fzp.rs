@@ -1,5 +1,5 @@
-//! Vissim's vehicle record (.fzp): lines of a table after `$VEHICLE:` and the names of its columns; units stand in the
-//! comments before it.
+//! Vissim's vehicle record (.fzp): lines of a table after `$VEHICLE:` and the names of its columns. Comments before it have the
+//! units.
 
 use std::path::Path;
 

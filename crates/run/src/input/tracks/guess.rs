@@ -1,4 +1,4 @@
-//! Which columns of a table of no known layout are what, and in which unit: by their names, and by the values of the first rows.
+//! Guesses the meaning and unit of columns in a table of unknown layout, from their names and the values of the first rows.
 
 use std::path::Path;
 
@@ -84,7 +84,7 @@ struct Found<'a> {
     unit: Option<&'static str>,
 }
 
-/// What a table is taken for.
+/// The guessed layout of a table.
 pub(super) struct Guess {
     /// The text of `--columns`.
     pub columns: String,

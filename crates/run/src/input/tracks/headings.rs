@@ -1,4 +1,4 @@
-//! Whether headings are what they are taken for: they are compared with how the road users moved.
+//! Checks the unit of headings: they are compared with how the road users moved.
 
 use strum::VariantArray;
 
@@ -12,13 +12,15 @@ use closecall::util::units::Metre;
 const STRETCH: Metre = 2.0;
 /// Fewer stretches tell nothing.
 const ENOUGH: u64 = 4;
-/// A heading fits that is at most so far from the direction of its stretch: cos 20°.
+/// A heading fits within 20° of its stretch's direction: cos 20°.
 const FITS: f64 = 0.939_69;
-/// One that is further off contradicts it: cos 45°.
+/// A heading further off contradicts it: cos 45°.
 const CONTRADICTS: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// The shares of stretches: a unit is right where so many fit, and doubtful where fewer do; so many that contradict are no manoeuvres.
+/// A unit is right if this share of the stretches fits.
 const RIGHT: f64 = 0.9;
+/// A unit is doubtful if a smaller share fits.
 const DOUBTFUL: f64 = 0.75;
+/// This share of contradictions is more than manoeuvres explain.
 const TOO_MANY: f64 = 0.3;
 
 /// What the headings of a table show, in each unit that they may have.
@@ -33,7 +35,7 @@ pub(super) struct Headings {
 }
 
 impl Headings {
-    /// Of a table whose headings are taken for this unit.
+    /// For a table with headings in this unit.
     pub fn new(unit: HeadingUnit, is_picture: bool) -> Self {
         Self { unit, is_picture, begin: None, stretches: 0, contradict: 0, fit: Default::default() }
     }
@@ -62,7 +64,7 @@ impl Headings {
         }
     }
 
-    /// The unit that fits where the one that they are taken for does not.
+    /// The unit that fits if the assumed one does not.
     pub fn better(&self) -> Option<HeadingUnit> {
         let share = |unit: HeadingUnit| self.fit[unit as usize] as f64 / self.stretches as f64;
         let is_doubtful = self.stretches >= ENOUGH && share(self.unit) < DOUBTFUL;

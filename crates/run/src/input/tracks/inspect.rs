@@ -1,4 +1,4 @@
-//! What a file is taken for, what it lacks, and the command that replays it.
+//! Identifies a file, lists what it lacks, and gives the command that replays it.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -13,7 +13,7 @@ use super::table;
 use crate::Result;
 use crate::input::replay::recording::Recording;
 
-/// Tells what a file is taken for, what it lacks, and the command that replays it.
+/// Identifies a file, with what it lacks and the command that replays it.
 ///
 /// # Errors
 /// [`crate::Error::File`] where it cannot be read; the errors of a recording that is broken at its beginning.

@@ -1,4 +1,4 @@
-//! Jumps of tracks, and identities that two road users exchange: counted, and told with the first of each.
+//! Jumps of tracks, and identities that two road users exchange: counted, and reported with the first of each.
 
 use super::kalman::Jump;
 use crate::util::decimal::Written;

@@ -1,4 +1,4 @@
-//! Which column of a table is what, in which unit: the text of `--columns`, and the options beside it.
+//! The meaning and unit of a table's columns: the text of `--columns`, and the options beside it.
 
 use strum::VariantNames;
 
@@ -15,7 +15,7 @@ pub const NOISE: Limit = Limit { of: "noise", least: 0.0, is_open: true, most: 1
 #[derive(Clone, Debug, Default, PartialEq, clap::Args)]
 #[command(next_help_heading = "Recording")]
 pub struct TrackOptions {
-    /// Format of the recording [default: as its first bytes and columns tell; closecall inspect FILE says].
+    /// Format of the recording [default: detected from the file; closecall inspect FILE shows it].
     #[arg(long, value_enum, ignore_case = true)]
     pub format: Option<RecordingFormat>,
     /// Columns of a table (CSV, Parquet): id, time or frame, x, y; if there are any, heading, speed or vx and vy, length, width,
@@ -26,7 +26,7 @@ pub struct TrackOptions {
     /// Frames per second of a recording whose time is a number of frames.
     #[arg(long, value_name = "HZ")]
     pub frame_rate: Option<f64>,
-    /// What x and y of --columns are: the middle of the road user, or of its front.
+    /// Reference point of x and y of --columns: the middle of the road user, or of its front.
     #[arg(long, value_enum, value_name = "PLACE")]
     pub origin: Option<Origin>,
     /// Smooth the places and headings of a table of trajectories. M is the standard deviation of the noise in a place, in m; without
@@ -41,7 +41,7 @@ fn noise(text: &str) -> Result<Metre, String> {
     noise.ok_or_else(|| format!("it must be {}", NOISE.range()))
 }
 
-/// What x and y of a road user are.
+/// Reference point of x and y.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Origin {
     /// The middle of its outline.

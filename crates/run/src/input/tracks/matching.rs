@@ -1,5 +1,5 @@
-//! The lane beneath a road user of a recording that does not tell it: the nearest that leads where it heads. Within junctions,
-//! where lanes lie on each other, none is named; replay finds the way from the edges before and behind.
+//! The lane beneath a road user if the recording does not name it: the nearest in its direction. Within junctions, where lanes
+//! overlap, none is named; replay finds the path from the edges before and behind.
 
 use closecall::detection::path::Foot;
 use closecall::geometry::Point;

@@ -12,7 +12,7 @@ use crate::util::header::{self, Wanted};
 #[derive(Default)]
 pub(super) struct Meta {
     pub frame_rate: Option<f64>,
-    /// None where there is no such file.
+    /// None without such a file.
     pub class_of: Option<FxHashMap<String, String>>,
     /// What is doubtful, a line each.
     pub remarks: Vec<String>,

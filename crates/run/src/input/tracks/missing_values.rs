@@ -15,7 +15,7 @@ pub(super) struct Completer {
     /// The row that waits for the one after it.
     waiting: Option<Row>,
     heading: f64,
-    /// By road user: the first heading that is known. One that stands at first heads where it goes then.
+    /// By road user: the first known heading. While standing at first, a road user heads where it goes later.
     first: Vec<f64>,
 }
 
@@ -64,7 +64,7 @@ impl Completer {
         row
     }
 
-    /// The heading of a completed row. One that never moved heads along +x.
+    /// The heading of a completed row. Without movement, it is +x.
     pub fn heading(&self, row: &Row) -> f64 {
         let first = || self.first.get(row.user as usize).copied().filter(|heading| !heading.is_nan()).unwrap_or(0.0);
         if row.values[2].is_nan() { first() } else { row.values[2] }

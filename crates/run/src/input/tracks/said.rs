@@ -1,4 +1,4 @@
-//! What had to be assumed to read a recording.
+//! The assumptions made in reading a recording.
 
 /// What had to be assumed, a line each.
 #[derive(Debug, Default)]

@@ -139,7 +139,7 @@ impl<'a> FileReader<'a> {
         let file = || name_beside(path, "tracksMeta").unwrap_or_else(|| "tracksMeta".to_owned());
         let unclassed = std::mem::take(&mut users.counts.unclassed);
         if mapping.has_meta && self.meta.class_of.is_none() && !is_classed {
-            remarks.push(format!("classes: there is no file {} beside it, which has them", file()));
+            remarks.push(format!("classes: the file {} with the classes is missing", file()));
         } else if let Some(first) = unclassed.iter().min() {
             let count = unclassed.len();
             remarks.push(format!("classes: {} lacks {count} of the road users, one of them \"{first}\"", file()));
@@ -227,7 +227,7 @@ impl RowReader<'_> {
         Ok(Some(Row { user, class, time, values: [place.x, place.y, heading, speed, length, width] }))
     }
 
-    /// The number of the class; none for a thing that is no road user.
+    /// The number of the class; none if not a road user.
     fn class(&self, id: &str, users: &mut Users) -> Option<u32> {
         let of_meta = self.file.meta.class_of.as_ref();
         let known = of_meta.and_then(|class_of| class_of.get(id));

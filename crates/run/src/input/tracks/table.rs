@@ -102,7 +102,7 @@ pub(super) fn read(
     }
 }
 
-/// What is said of a table whose last row has no line break.
+/// The warning about a last row without a line break.
 pub(super) fn maybe_cut(path: &Path) -> String {
     format!("{}: its last row has no line break; where the file was cut short, the last value is wrong", path.display())
 }

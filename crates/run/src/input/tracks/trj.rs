@@ -29,8 +29,9 @@ const ENGLISH: u8 = 0;
 const FOOT: Metre = 0.3048;
 /// From this version on, the first record has a byte that tells whether places have heights.
 const WITH_HEIGHTS: f32 = 2.0;
-/// A vehicle longer than this is taken for a truck, one that is narrower than that for a bicycle, in m.
+/// A longer vehicle counts as a truck, in m.
 const TRUCK: Metre = 6.5;
+/// A narrower one counts as a bicycle, in m.
 const NARROW: Metre = 1.2;
 
 /// Whether a file begins as one of these does.

@@ -1,4 +1,4 @@
-//! The road users of a table, and what was assumed of them: counted, and said.
+//! The road users of a table, and assumptions about them, counted and reported.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -8,7 +8,7 @@ use super::said::Said;
 
 /// Names that a remark has at most.
 const NAMED: usize = 5;
-/// The number of a class of things that are no road users.
+/// The number of a class of things other than road users.
 const NONE: u32 = u32::MAX;
 
 /// What is known of the road users beside their rows.
@@ -37,7 +37,7 @@ pub(super) struct Counts {
     pub widths: u64,
     pub classes: u64,
     left_out: u64,
-    /// The first [`NAMED`] names of classes that are unknown, and of those that are no road users.
+    /// The first [`NAMED`] names of unknown classes, and of things other than road users.
     unknown: Vec<String>,
     things: Vec<String>,
     /// Road users that the file with the classes lacks.
@@ -104,7 +104,7 @@ impl Users {
         self.known.clear();
     }
 
-    /// The number of a class by its name; none for things that are no road users, which are counted.
+    /// The number of a class by its name; none for things other than road users, which are counted.
     pub fn class(&mut self, name: &str, mapping: &Mapping) -> Option<u32> {
         let number = match self.known.get(name) {
             Some(number) => *number,
@@ -173,7 +173,7 @@ impl Counts {
         }
         if self.left_out > 0 {
             let (rows, names) = (self.left_out, quoted(&self.things));
-            said.doubtful.push(format!("classes: {names} are no road users, so their rows are left out: {rows}"));
+            said.doubtful.push(format!("classes: {names} are not road users, so their rows are left out: {rows}"));
         }
     }
 }

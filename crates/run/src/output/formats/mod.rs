@@ -31,7 +31,7 @@ pub use trajectories::{FAR, origin as origin_of_trajectories};
 #[derive(Clone, Debug, Default, PartialEq, Eq, clap::Args)]
 #[command(next_help_heading = "Output")]
 pub struct OutputFiles {
-    /// Format of the conflicts in the log. Parquet is made of conflicts.csv when the run has ended, and replaces it.
+    /// Format of the conflicts in the log. Parquet replaces conflicts.csv when the run has ended.
     #[arg(long, value_enum, value_name = "FORMAT", default_value_t)]
     pub log_format: LogFormat,
     /// Write each conflict that counts once in the format of SUMO's SSM device.

@@ -1,8 +1,8 @@
 //! Conflicts in the format of SUMO's SSM device, so that scripts for its files keep working.
 //!
-//! Each conflict is written once, with closecall's ego and foe; the device writes it once for each of the two. One that is
-//! none of traffic's has an attribute `artefact`, which the device's files lack. `type` is
-//! the device's code for the encounter (SUMO's `MSDevice_SSM.h`).
+//! Each conflict is written once, with closecall's ego and foe; the device writes it once for each of the two. Artefacts have
+//! an attribute `artefact`, which the device's files lack. `type` is the device's code for the encounter (SUMO's
+//! `MSDevice_SSM.h`).
 
 use std::fmt::Write;
 use std::path::Path;

@@ -1,5 +1,5 @@
-//! What a clip does not hold of its road users and ASAM's formats ask for: their heights and axles, the formats' words for
-//! SUMO's classes, and their centres.
+//! What ASAM's formats need and a clip lacks: heights and axles of road users, the formats' words for SUMO's classes, and
+//! centres.
 
 use std::f64::consts::{PI, TAU};
 

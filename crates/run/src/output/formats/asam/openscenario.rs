@@ -24,7 +24,7 @@ const MASS: f64 = 75.0;
 /// The largest angle of a steered wheel in rad.
 const STEERING: f64 = 0.5;
 
-/// What a scenario is made of.
+/// The inputs of a scenario.
 #[derive(Clone, Copy, Debug)]
 pub struct Scenario<'a> {
     /// The conflict.
