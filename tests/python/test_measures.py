@@ -188,7 +188,13 @@ def of_step(row: Row, size: Row, run: Run) -> dict[str, float | None]:
     return found
 
 
-EDGES: dict[str, tuple[float, float]] = {"mttc": (9.9, 10.1), "act": (1e3, math.inf), "br": (0, 1e-4), "max_braking": (1.2999, 1.3001), "ei": (0, 1e-3)}
+EDGES: dict[str, tuple[float, float]] = {
+    "mttc": (9.9, 10.1),
+    "act": (1e3, math.inf),
+    "br": (0, 1e-4),
+    "max_braking": (1.2999, 1.3001),
+    "ei": (0, 1e-3),
+}
 """Values that rounding may leave empty on one side."""
 
 
@@ -213,7 +219,11 @@ def test_the_measures_of_a_step_are_what_its_formulas_give(net: str, measured: C
                 assert is_near(found, expected, measure), (measure, found, expected, row)
                 compared[measure] += found is not None
     needed = {"act", "delta_s", "ei", "max_d", "max_s", "rss_distance"}
-    needed |= {"a_long_req", "br", "btn", "crash_index", "max_braking", "mdrac", "mttc", "sgap", "thw"} if net == "reckless" else set()
+    needed |= (
+        {"a_long_req", "br", "btn", "crash_index", "max_braking", "mdrac", "mttc", "sgap", "thw"}
+        if net == "reckless"
+        else set()
+    )
     assert all(compared[measure] >= 10 for measure in needed), compared
 
 
