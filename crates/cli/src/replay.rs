@@ -23,8 +23,8 @@ use closecall_run::run::recorded::{Ending, RecordedRun};
 #[derive(Args)]
 #[command(next_help_heading = "Run")]
 pub(crate) struct ReplayArgs {
-    /// Maximum number of threads that test the pairs of a step [default: one per processor]. With 1, no thread reads the steps
-    /// ahead.
+    /// Recording to check: SUMO's fcd-output as XML, CSV or Parquet, SSAM's .trj, Vissim's .fzp, or a table of trajectories; also
+    /// gzipped. Several tables of one time base, such as those of vehicles and of pedestrians, are one recording.
     #[arg(value_name = "FILE", required = true, help_heading = None::<&str>)]
     recordings: Vec<PathBuf>,
     /// Net on which the recording was made. Without one, paths follow no lanes: see --path arc.
@@ -45,8 +45,8 @@ pub(crate) struct ReplayArgs {
     /// The recording was made with SUMO's sublane model (--lateral-resolution), where vehicles move sideways within a lane.
     #[arg(long)]
     sublane: bool,
-    /// Threads at most that test the pairs of a step, as many as these keep busy [default: one per processor]. With 1, no thread
-    /// reads the steps ahead.
+    /// Maximum number of threads that test the pairs of a step [default: one per processor]. With 1, no thread reads the steps
+    /// ahead.
     #[arg(long, value_name = "N", help_heading = "Run", value_parser = clap::value_parser!(u8).range(1..=64))]
     threads: Option<u8>,
     #[command(flatten)]

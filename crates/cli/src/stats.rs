@@ -15,7 +15,7 @@ use closecall_run::util::output_file;
 /// Which logs to analyse, and how to print the result.
 #[derive(Args)]
 pub(crate) struct StatsArgs {
-    /// Crashes observed in reality for the runs of --against: estimate how many the first set may have.
+    /// Log folders, or folders that contain log folders at any depth, such as the results of a sweep.
     #[arg(value_name = "LOG", required = true)]
     folders: Vec<PathBuf>,
     /// What to group the conflicts by.
@@ -27,7 +27,7 @@ pub(crate) struct StatsArgs {
     /// File to write instead of standard output.
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     out: Option<PathBuf>,
-    /// Length of the lists of worst conflicts and of hot spots.
+    /// Number of worst conflicts and of hot spots to list.
     #[arg(long, alias = "worst", value_name = "N", default_value_t = 10, help_heading = "Output")]
     top: usize,
     /// With `--format csv`, begin ids that a spreadsheet would run as formulas (=, +, -, @) with an apostrophe.
@@ -36,10 +36,10 @@ pub(crate) struct StatsArgs {
     /// Runs to compare with: log folders, or folders that contain log folders.
     #[arg(long, value_name = "LOG", num_args = 1.., help_heading = "Comparison")]
     against: Vec<PathBuf>,
-    /// Ratio of rates that a comparison is to find: say how many runs that takes, by the spread of these runs.
+    /// Ratio of rates to detect: print how many runs a comparison needs, given the spread of these runs.
     #[arg(long, value_name = "RATIO", value_parser = ratio, help_heading = "Comparison")]
     plan: Option<f64>,
-    /// Crashes observed in reality where the runs of --against were made of: say how many the first set may have.
+    /// Crashes observed in reality for the runs of --against: estimate how many the first set may have.
     #[arg(long, value_name = "CRASHES", requires_all = ["against", "years"], help_heading = "Comparison")]
     observed: Option<u64>,
     /// Years in which the crashes were observed.
