@@ -171,14 +171,19 @@ pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
                 axis: Axis::Probability,
                 method: name,
                 parameter: format!("{scene}{parameter}"),
-                error_name: "largest error of the crash probability",
+                error_name: if matches!(method, Method::Bounds) {
+                    "furthest that the crash probability is outside its bounds"
+                } else {
+                    "largest error of the crash probability"
+                },
                 error: approaches.iter().zip(&truth).map(off).fold(0.0, f64::max),
                 false_negative_rate: 0.0,
                 false_positive_rate: 0.0,
                 ns_per_item,
                 items: count,
                 on_pareto_front: false,
-                scene: scene.to_owned(),
+                // Bounds answer another question.
+                scene: if matches!(method, Method::Bounds) { format!("{scene}, bounds") } else { scene.to_owned() },
                 default: matches!(method, Method::Closecall),
             });
         }
