@@ -124,7 +124,7 @@ pub struct Options {
     /// Disable all shortcuts, or only the named ones; slower, with the same result.
     #[cfg_attr(feature = "clap", arg(
         long, alias = "keep-all", value_enum, value_name = "NAME,…", value_delimiter = ',', num_args = 0..=1,
-        require_equals = true, default_missing_values = Shortcut::ALL_NAMES
+        require_equals = true, default_missing_values = Shortcut::names()
     ))]
     #[serde(rename = "keep_all", serialize_with = "shortcut::are_all")]
     pub no_shortcuts: Vec<Shortcut>,

@@ -1,10 +1,12 @@
 //! Work that a run skips where the scene does not need it; `--no-shortcuts` disables all shortcuts, or those it names.
 
 use serde::Serializer;
+use strum::{IntoStaticStr, VariantArray};
 
 /// Work that a scene may not need.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, IntoStaticStr, VariantArray)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[strum(serialize_all = "kebab-case")]
 pub enum Shortcut {
     /// The broad phase leaves out pairs whose areas do not meet. If kept, every pair enters the narrow phase.
     #[cfg_attr(feature = "clap", value(alias = "areas_apart"))]
@@ -25,10 +27,13 @@ pub enum Shortcut {
 
 impl Shortcut {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::AreasApart, Self::PathsApart, Self::InLine, Self::KnownPaths];
-    /// Their names.
+    pub const ALL: &'static [Self] = Self::VARIANTS;
+
+    /// The names of all.
     #[cfg(feature = "clap")]
-    pub(super) const ALL_NAMES: [&str; 4] = ["areas-apart", "paths-apart", "in-line", "known-paths"];
+    pub(super) fn names() -> impl Iterator<Item = &'static str> {
+        Self::ALL.iter().map(|one| one.into())
+    }
 }
 
 /// Writes whether these are all.

@@ -193,7 +193,7 @@ proptest! {
         let steps = moves.iter().map(|speed| { front += speed; (front, *speed, car) }).collect::<Vec<_>>();
         let steps = [(125.0, 5.0, car)].into_iter().chain(steps).chain([(front, 0.0, car)]).collect::<Vec<_>>();
         for steps in [&steps[..steps.len() - 1], &steps] {
-            let [left_out, kept] = [&[][..], &Shortcut::ALL].map(|disabled| {
+            let [left_out, kept] = [&[][..], Shortcut::ALL].map(|disabled| {
                 meet(&road, &profile, steps, &Options { no_shortcuts: disabled.to_vec(), ..Options::default() })
             });
             prop_assert_eq!(left_out, kept);

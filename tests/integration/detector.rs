@@ -191,7 +191,7 @@ proptest! {
     ) {
         let mut options = Options { mode: Mode::Paper, ..options() };
         options.types.values_mut().for_each(|settings| settings.build_up = Some(build_up));
-        let [left_out, kept] = [&[][..], &Shortcut::ALL].map(|disabled| {
+        let [left_out, kept] = [&[][..], Shortcut::ALL].map(|disabled| {
             let options = Options { no_shortcuts: disabled.to_vec(), ..options.clone() };
             look_at(&mut Detector::new(&options, None), &options, &cars)
         });
@@ -336,7 +336,7 @@ proptest! {
         let profile = roster.profile(Profile::vehicle(&sumo, &options())).unwrap();
         ["a", "b"].iter().for_each(|id| _ = roster.enter(id, profile));
         let cars = [(0.0, 0.0, 0.0, speed), (x, y, heading, foe_speed)];
-        let [left_out, kept] = [&[][..], &Shortcut::ALL].map(|disabled| {
+        let [left_out, kept] = [&[][..], Shortcut::ALL].map(|disabled| {
             let options = Options { path: PathModel::Arc, no_shortcuts: disabled.to_vec(), ..options() };
             turned_by(turn, &mut Detector::new(&options, None), &cars, &[0, 1], &roster)
         });
@@ -389,7 +389,7 @@ proptest! {
 
     #[test]
     fn looking_further_leaves_nothing_out(cars in some_cars(), arcs: bool) {
-        let [left_out, kept] = [&[][..], &Shortcut::ALL].map(|disabled| {
+        let [left_out, kept] = [&[][..], Shortcut::ALL].map(|disabled| {
             let path = if arcs { PathModel::Arc } else { PathModel::Straight };
             let options = Options { no_shortcuts: disabled.to_vec(), path, ..logging("ttc < 4 or drac > 2 or pet < 2") };
             look_at(&mut Detector::new(&options, None), &options, &cars)

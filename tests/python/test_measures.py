@@ -317,7 +317,7 @@ def test_added_columns_follow_those_that_every_log_has(tmp_path: Path) -> None:
     count = len(common[0])
     assert [row[:count] for row in table] == common == [row[:count] for row in chosen]
     assert [row[count:] for row in chosen] == [[row[table[0].index(name)] for name in ("t2", "ei")] for row in table]
-    assert chosen[0][count:] == ["t2", "ei"] and len(table[0]) == count + 27
+    assert chosen[0][count:] == ["t2", "ei"] and len(table[0]) == count + 28
     options = json.loads((tmp_path / "two" / "run.json").read_text())["options"]
     assert options["measures"] == "t2,ei"
     assert "measures" not in json.loads((tmp_path / "default" / "run.json").read_text())["options"]
