@@ -102,7 +102,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
     #[test]
-    fn who_keeps_its_lane_drives_its_lane_path(
+    fn one_that_keeps_its_lane_drives_its_lane_path(
         radius in 8.0..60.0_f64, amplitude in 0.2..1.4_f64, speed in 2.0..20.0_f64, rate in 10.0..30.0_f64,
     ) {
         // A lane whose direction swings: no tighter than the radius.
@@ -127,11 +127,13 @@ proptest! {
             replay(file.path(), Some(&net), &[("path", path)], |_, run| paths.push(run.path(run.frame.user(0))));
             paths
         });
+        // Between two recorded places the path is the chord.
+        let most = 0.03 + (speed / rate).powi(2) / (8.0 * radius);
         // The last steps look beyond the recording's end.
         for (lanes, driven) in paths[0].iter().zip(&paths[1]).take((2.0 * rate) as usize) {
             for point in driven {
                 let off = lanes.windows(2).map(|ends| from_segment(*point, ends[0], ends[1])).fold(f64::INFINITY, f64::min);
-                prop_assert!(off < 0.04, "{off} m beside the lane");
+                prop_assert!(off < most, "{off} m beside the lane");
             }
         }
     }
