@@ -6,6 +6,8 @@ pub(crate) mod nets;
 
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+
 use super::filter::{ConflictFilter, set_aside_in_words};
 use super::logged::{ConflictReader, LostRows, Progress, Reading, log_folders};
 use super::variants::{Variant, Variants};
@@ -38,8 +40,21 @@ pub struct Conflicts {
     pub(super) set_aside: Option<String>,
     /// The filter that they passed, as the words of a command line; none for all.
     pub(super) filter: Option<String>,
+    /// Which part of the traffic they are of.
+    pub(super) scope: Scope,
     /// The logs that lack rows.
     pub(super) lost: Vec<LostRows>,
+}
+
+/// Whether the filter selects a part of the net or of the time: the traffic of that part alone is not known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub(crate) struct Scope {
+    /// It names places.
+    pub place: bool,
+    /// It names a period.
+    pub period: bool,
+    /// It counts those that are none of traffic's, too.
+    pub artefacts: bool,
 }
 
 /// Reads the logs in `folders`, each a log itself or a folder of logs. The net is read from `net`, or from the path in the
@@ -115,9 +130,11 @@ pub fn read(
         let summaries = records.iter_mut().filter_map(|record| record.get_mut("summary")?.as_object_mut());
         summaries.for_each(|summary| drop(summary.remove("entered")));
     }
+    let scope = Scope { place: !filter.places.is_empty(), period: filter.has_period(), artefacts: filter.artefacts };
     let filter = (!filter.is_empty()).then(|| filter.to_string());
     let conflicts = worst.into_sorted();
-    Ok(Conflicts { logs, records, variants: variants.all, ground, conflicts, seen, set_aside: aside, filter, lost })
+    let variants = variants.all;
+    Ok(Conflicts { logs, records, variants, ground, conflicts, seen, set_aside: aside, filter, scope, lost })
 }
 
 impl Conflicts {

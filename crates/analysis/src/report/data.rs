@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::contact::parts;
 use super::movements::Movements;
-use super::{clips, faults, page_net};
+use super::{clips, faults, page_net, reading, remarks};
 use crate::dataset::Conflicts;
 use crate::dataset::kept::RunConflict;
 use crate::statistics::Effects;
@@ -29,7 +29,7 @@ const NOT_SHOWN: &str = "clearance";
 /// # Errors
 /// Those of reading the clips.
 pub fn json(found: Conflicts, before: Option<Value>) -> Result<String> {
-    let Conflicts { logs, records, variants, mut ground, mut conflicts, seen, set_aside, filter, .. } = found;
+    let Conflicts { logs, records, variants, mut ground, mut conflicts, seen, set_aside, filter, scope, .. } = found;
     let clips = clips::of_worst(&conflicts, &logs, &mut ground.notes)?;
     let key = |one: &RunConflict| (one.run, one.conflict.id);
     let drawn = conflicts.iter().take(DRAWN).map(key).collect::<FxHashSet<_>>();
@@ -46,6 +46,9 @@ pub fn json(found: Conflicts, before: Option<Value>) -> Result<String> {
         "kinds": Kind::ALL.map(Kind::name),
         "severities": Severity::ALL.map(Severity::name),
         "clips": played,
+        "reading": reading::json(&records),
+        "remarks": remarks::json(&records),
+        "scope": scope,
         "runs": runs(&logs, records),
         "variants": variants.iter().map(|variant| json!({ "name": variant.name, "runs": variant.runs })).collect::<Vec<_>>(),
         "defaults": Options::default(),
@@ -274,6 +277,7 @@ mod tests {
                 seen: 1,
                 set_aside: None,
                 filter: None,
+                scope: Default::default(),
             },
             None,
         )

@@ -9,6 +9,8 @@ mod data;
 mod faults;
 mod movements;
 mod page_net;
+mod reading;
+mod remarks;
 
 use std::path::{Path, PathBuf};
 

@@ -82,3 +82,19 @@ impl Versions {
         Self { closecall: env!("CARGO_PKG_VERSION"), sumo }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use closecall::util::remark::RemarkCode;
+    use strum::VariantArray;
+
+    #[test]
+    fn the_codes_of_remarks_are_documented() {
+        let page = include_str!("../../../../docs/log.md");
+        // A later version's code is not known, and the place of an earlier log is said only.
+        let written = |code: &&RemarkCode| !matches!(code, RemarkCode::Other | RemarkCode::EarlierLog);
+        for code in RemarkCode::VARIANTS.iter().filter(written) {
+            assert!(page.contains(&format!("`{}`", code.name())), "{code:?}");
+        }
+    }
+}
