@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::contact::parts;
 use super::movements::Movements;
+use super::streets::Streets;
 use super::{clips, faults, page_net, reading, remarks};
 use crate::dataset::Conflicts;
 use crate::dataset::kept::RunConflict;
@@ -170,6 +171,7 @@ fn columns(text: &mut String, rows: &[RunConflict], drawn: Vec<Value>, net: Opti
     let mut places = Words::default();
     let spots = lanes.list.iter().map(|lane| spot(lane, net)).collect::<Vec<_>>();
     let spot_of_lane = spots.iter().map(|spot| places.place(spot)).collect::<Vec<_>>();
+    let streets = net.map(Streets::of).unwrap_or_default();
     let lists = json!({
         "count": rows.len(),
         "ids": ids.list,
@@ -181,6 +183,7 @@ fn columns(text: &mut String, rows: &[RunConflict], drawn: Vec<Value>, net: Opti
         "causes": causes.list,
         "lanes": lanes.list,
         "spots": places.list,
+        "streets": places.list.iter().map(|spot| streets.name(spot)).collect::<Vec<_>>(),
         "spot_of_lane": spot_of_lane,
         "drawn": drawn,
         "movements": movements.json(),

@@ -11,6 +11,7 @@ mod movements;
 mod page_net;
 mod reading;
 mod remarks;
+mod streets;
 
 use std::path::{Path, PathBuf};
 
@@ -30,9 +31,10 @@ const DATA: &str = "{{data}}";
 const LIBRARY: (&str, &str) = ("{{library}}", include_str!("vendor/echarts.min.js"));
 const SCRIPTS: &str = "{{scripts}}";
 /// The page's own scripts, each after those that it needs.
-const OWN_SCRIPTS: [&str; 19] = [
+const OWN_SCRIPTS: [&str; 22] = [
     include_str!("script/data.js"),
     include_str!("script/filter.js"),
+    include_str!("script/scope.js"),
     include_str!("script/colours.js"),
     include_str!("script/roads.js"),
     include_str!("script/words.js"),
@@ -43,10 +45,12 @@ const OWN_SCRIPTS: [&str; 19] = [
     include_str!("script/charts.js"),
     include_str!("script/movements.js"),
     include_str!("script/spots.js"),
+    include_str!("script/verdict.js"),
     include_str!("script/clip.js"),
     include_str!("script/curves.js"),
     include_str!("script/player.js"),
     include_str!("script/tables.js"),
+    include_str!("script/opened.js"),
     include_str!("script/against.js"),
     include_str!("script/export.js"),
     include_str!("script/page.js"),

@@ -76,12 +76,15 @@ function readAddress() {
   const circle = where.split(",").map(Number);
   if (where && spot >= 0) filter.spot = spot;
   else if (circle.length === 3 && circle.every(Number.isFinite)) filter.circle = circle;
+  opened.row = opened.rowOf(words.get("conflict"));
+  opened.missing = words.has("conflict") && opened.row === null ? words.get("conflict") : null;
   map.mode = map.modes().includes(words.get("map")) ? words.get("map") : map.first();
 }
 
 function writeAddress() {
   const words = filterWords();
   if (map.mode !== map.first()) words.push(["map", map.mode]);
+  if (opened.row !== null) words.push(["conflict", opened.addressOf(opened.row)]);
   const text = words.map(([name, value]) => `${name}=${encodeURIComponent(value).replaceAll("%2C", ",").replaceAll("%3A", ":")}`).join("&");
   if (text !== location.hash.slice(1)) history.replaceState(null, "", text ? `#${text}` : location.pathname + location.search);
 }
@@ -144,7 +147,7 @@ function showFilter() {
   byId("to").placeholder = Math.ceil(period[1]);
   const { spot, circle } = filter;
   byId("here").hidden = spot === null && !circle;
-  byId("there").textContent = spot !== null ? conflicts.spots[spot] || "no lane"
+  byId("there").textContent = spot !== null ? nameOfSpot(spot)
     : circle ? `${number(circle[2])} m around ${number(circle[0])}, ${number(circle[1])}` : "";
 }
 

@@ -9,7 +9,7 @@ const MODE_WORDS = { density: "risk index", points: "each conflict", difference:
 
 /** The numbers of the most dangerous places, each above its heaviest hexagon or in the middle of its conflicts. */
 function badgesOf(view, rows, mode) {
-  const most = spotRows(rows).slice(0, MOST_BADGES).filter((spot) => spot.risk > 0);
+  const most = numbered(rows);
   const taken = [];
   return most.flatMap((spot, rank) => {
     const place = mode === "density" ? density.heaviest(spot, view.scale) : spot;
@@ -78,7 +78,7 @@ const map = {
     document.querySelectorAll("input[name=mode]").forEach((button) => { button.checked = button.value === this.mode; });
     this.point(null);
     this.showLegend();
-    const most = spotRows(rows).slice(0, MOST_BADGES).map((spot) => spotName(spot) + spotWords(spot));
+    const most = numbered(rows).map((spot) => spotName(spot) + spotWords(spot));
     describeChart(this.element, `Map of ${number(rows.length)} conflicts. ${most.join(" ")} The table of hot spots has the same as numbers.`);
   },
 
@@ -94,7 +94,7 @@ const map = {
         if (this.view.scale >= CLOSE !== wasClose) this.showLegend();
         // The table ranks the places by what happens after, not by the change.
         const badges = this.mode === "difference" ? [] : badgesOf(this.view, rows, this.mode);
-        const over = [...badges, ...faults.marks(this.view), ...scaleBar(1 / this.view.scale, this.view.height)];
+        const over = [...badges, ...opened.marks(this.view), ...faults.marks(this.view), ...scaleBar(1 / this.view.scale, this.view.height)];
         if (this.mode !== "points") {
           return { type: "group", $mergeChildren: false, children: [...density.children(this.view, rows, this.mode === "difference"), ...over] };
         }
@@ -156,12 +156,12 @@ const map = {
       make("div", { textContent: `${number(many)} conflicts here and around` }));
   },
 
-  /** Filters by the place that is clicked: the spot of the conflict there, or the circle of its hexagon. */
+  /** Opens the conflict whose sign is clicked, or filters by the circle of the hexagon. */
   choose(event) {
     if (!this.view) return;
     if (this.mode === "points") {
       const row = this.at(event.offsetX, event.offsetY);
-      if (row !== null) choosePlace(spotOf(row), null);
+      if (row !== null) opened.open(row);
       return;
     }
     const cell = this.cell(this.place(event));
@@ -254,6 +254,6 @@ const map = {
     }
     const circled = { points: "Circled numbers: the first places of the table, whole junctions and edges",
       density: "Circled numbers: the first places of the table, whole junctions and edges, each at its hexagon with the most" }[this.mode];
-    byId("legend").replaceChildren(words[this.mode], ...entries, ...(circled ? [make("span", { className: "said", textContent: circled })] : []));
+    byId("legend").replaceChildren(words[this.mode], ...entries, ...(circled && numbered(this.rows).length ? [make("span", { className: "said", textContent: circled })] : []));
   },
 };

@@ -7,7 +7,8 @@ function sums(rows) {
   const counts = SEVERITIES.map(() => 0);
   let all = 0;
   for (const row of rows) {
-    counts[column.severity[row]]++;
+    // What is not traffic is shown if it is asked for, and counted nowhere.
+    if (isTraffic(row)) counts[column.severity[row]]++;
     all += risk[row];
   }
   return { rows, counts, risk: all };
@@ -84,9 +85,9 @@ const EQUAL = 1e-9;
  * where there are several of one variant that differ; otherwise that of a sum of independent rare events, each with its
  * weight (Fay and Feuer 1997). `traffic` of each run: equal, or the vehicles that entered.
  */
-function riskInterval(rows, traffic = () => 1) {
-  const runs = filter.run === null && (data.variants.length < 2 || filter.variant !== null)
-    ? data.runs.map((_, run) => run).filter((run) => filter.variant === null || variantOf[run] === filter.variant) : [];
+function riskInterval(rows, traffic = () => 1, variant = filter.variant) {
+  const runs = filter.run === null && (data.variants.length < 2 || variant !== null)
+    ? data.runs.map((_, run) => run).filter((run) => variant === null || variantOf[run] === variant) : [];
   const sum = rows.reduce((all, row) => all + risk[row], 0);
   if (sum <= 0) return [0, 0];
   if (runs.length > 1) {
@@ -111,38 +112,44 @@ function riskInterval(rows, traffic = () => 1) {
 }
 
 /** The interval of a group, computed once. */
-const intervalOf = (group) => (group.interval ||= riskInterval(group.rows));
+const intervalOf = (group) => (group.interval ||= riskInterval(group.rows, undefined, group.variant));
 /** Whether chance may have put a spot behind another: their intervals overlap. */
 const mayOutrank = (spot, other) => intervalOf(spot)[1] >= intervalOf(other)[0];
 
-/** The spots of some rows, the largest risk index first; kept until the rows change. */
-function spotRows(rows) {
-  if (spotRows.rows !== rows) {
-    const spots = [...grouped(rows, (row) => [spotOf(row)])].map(([place, of_place]) => {
-      const spot = { place, ...sums(of_place) };
-      const weight = (row) => risk[row] + 1e-9;
-      const all = of_place.reduce((sum, row) => sum + weight(row), 0);
-      [spot.x, spot.y] = [column.x, column.y].map((axis) => of_place.reduce((sum, row) => sum + weight(row) * axis[row], 0) / all);
-      return spot;
-    });
-    const entered = enteringByPlace();
-    for (const spot of spots) {
-      spot.entered = entered.get(spotName(spot)) || null;
-      spot.rate = spot.entered && (PER_ENTERING * spot.risk) / spot.entered;
-    }
-    spots.sort((a, b) => b.risk - a.risk || b.counts[2] - a.counts[2] || b.rows.length - a.rows.length || a.place - b.place);
-    spots.forEach((spot, rank) => { spot.rank = rank + 1; });
-    Object.assign(spotRows, { rows, spots });
+/** The spots of some rows, the largest risk index first; those of one variant know it. */
+function spotsOf(rows, variant = filter.variant) {
+  const spots = [...grouped(rows, (row) => [spotOf(row)])].map(([place, of_place]) => {
+    const spot = { place, variant, ...sums(of_place) };
+    const weight = (row) => risk[row] + 1e-9;
+    const all = of_place.reduce((sum, row) => sum + weight(row), 0);
+    [spot.x, spot.y] = [column.x, column.y].map((axis) => of_place.reduce((sum, row) => sum + weight(row) * axis[row], 0) / all);
+    return spot;
+  });
+  const entered = enteringByPlace();
+  for (const spot of spots) {
+    spot.entered = entered.get(conflicts.spots[spot.place]) || null;
+    spot.rate = spot.entered && (PER_ENTERING * spot.risk) / spot.entered;
   }
+  spots.sort((a, b) => b.risk - a.risk || b.counts[2] - a.counts[2] || b.rows.length - a.rows.length || a.place - b.place);
+  spots.forEach((spot, rank) => { spot.rank = rank + 1; });
+  return spots;
+}
+
+/** The same, kept until the rows change. */
+function spotRows(rows) {
+  if (spotRows.rows !== rows) Object.assign(spotRows, { rows, spots: spotsOf(rows) });
   return spotRows.spots;
 }
+
+/** The runs that the filter lets through. */
+const shownRuns = () => data.runs.filter((_, run) => (filter.run === null || filter.run === run) && (filter.variant === null || filter.variant === variantOf[run]));
 
 /** The vehicles that entered each junction in the runs that are shown, by the junction's name; empty where that is not known. */
 function enteringByPlace() {
   const entered = new Map();
-  // Of a period only the conflicts are known, not the traffic.
-  if (Number.isFinite(filter.from) || Number.isFinite(filter.to)) return entered;
-  const runs = data.runs.filter((_, run) => (filter.run === null || filter.run === run) && (filter.variant === null || filter.variant === variantOf[run]));
+  // Of a period only the conflicts are known, not the traffic; and plans are not one traffic.
+  if (isOfPeriod() || plansShown().length) return entered;
+  const runs = shownRuns();
   // A run of an earlier version, or one that was killed, has no such counts.
   if (!runs.every((run) => run.summary?.steps > 0 && run.summary.entered)) return entered;
   for (const run of runs) {
@@ -159,13 +166,18 @@ const PER_ENTERING = 1000;
 /** The risk index per entering vehicles with its interval. */
 function rateWords({ rate, entered, ...spot }) {
   if (rate === null) return "–";
-  const junction = spotName(spot).replace(/^junction /, "");
+  const junction = conflicts.spots[spot.place].replace(/^junction /, "");
   const ends = riskInterval(spot.rows, (run) => data.runs[run].summary.entered[junction] || 0).map((end) => (PER_ENTERING * end) / entered);
   const [middle, low, high] = [rate, ...ends].map((value) => number(value, value < 10 ? 1 : 0));
   return `${middle} (${low} to ${high})`;
 }
 
-const spotName = (spot) => conflicts.spots[spot.place] || "no lane";
+/** A place as people know it: by its streets where the net names them, and by its id. */
+function nameOfSpot(place) {
+  const street = conflicts.streets[place];
+  return street ? `${street} (${conflicts.spots[place]})` : conflicts.spots[place] || "no lane";
+}
+const spotName = (spot) => nameOfSpot(spot.place);
 
 /** What is said of a spot behind its name: how dangerous it is, what happens there, and why. */
 function spotWords(spot) {
@@ -173,8 +185,13 @@ function spotWords(spot) {
   const cause = usual(spot.rows, strongestCause);
   const why = [manoeuvre && `mostly ${OFTEN[manoeuvre] || inWords(manoeuvre)}`, cause && (WHY[cause] || inWords(cause))].filter(Boolean).join("; ");
   const counts = [[2, "critical"], [1, "serious"]].filter(([severity]) => spot.counts[severity]).map(([severity, name]) => `${number(spot.counts[severity])} ${name}`);
+  return `: risk index ${number(spot.risk, 1)}${bracketsOf(spot)}${counts.length ? `, ${counts.join(", ")}` : ""}${why ? `, ${why}` : ""}.`;
+}
+
+/** The interval of a spot in brackets; empty where both of its ends are written alike, as it would say nothing. */
+function bracketsOf(spot) {
   const [low, high] = intervalOf(spot).map((end) => number(end, 1));
-  return `: risk index ${number(spot.risk, 1)} (${low} to ${high})${counts.length ? `, ${counts.join(", ")}` : ""}${why ? `, ${why}` : ""}.`;
+  return low === high ? "" : ` (${low} to ${high})`;
 }
 
 /** A bar as long as the risk index, in the shares of the severities. */
@@ -207,7 +224,9 @@ class SortedTable {
     const { by, down } = this;
     // A severity that the filter leaves out has no column.
     const hasEntering = this.groups.some((group) => group.entered);
-    const columns = this.columns.filter(({ severity, entering }) => (severity === undefined || filter.severities[severity]) && (!entering || hasEntering));
+    const plans = plansShown();
+    const columns = this.columns.filter(({ severity, entering, plan, single }) => (severity === undefined || filter.severities[severity])
+      && (!entering || hasEntering) && (plan === undefined || (plan < plans.length && plans.length <= MOST_PLANS)) && !(single && plans.length));
     const head = make("tr", {}, ...columns.map((column_of, place) => {
       const cell = make("th", { className: column_of === BAR ? "share" : column_of.text ? "" : "number", scope: "col" });
       cell.setAttribute("aria-sort", column_of === this.columns[by] ? (down ? "descending" : "ascending") : "none");
@@ -216,7 +235,8 @@ class SortedTable {
         if (!column_of.heading || column_of === BAR) cell.setAttribute("aria-hidden", "true");
         return cell;
       }
-      const button = make("button", { type: "button", textContent: `${column_of.heading}${column_of === this.columns[by] ? (down ? "\u00a0▾" : "\u00a0▴") : ""}` });
+      const title = headingOf(column_of);
+      const button = make("button", { type: "button", textContent: `${title}${column_of === this.columns[by] ? (down ? "\u00a0▾" : "\u00a0▴") : ""}` });
       button.onclick = () => {
         this.down = column_of === this.columns[by] ? !down : !column_of.text;
         this.by = this.columns.indexOf(column_of);
@@ -225,7 +245,7 @@ class SortedTable {
       };
       cell.append(button);
       // Paper repeats the heading on each page, but no buttons.
-      cell.dataset.heading = column_of.heading;
+      cell.dataset.heading = title;
       return cell;
     }));
     const value = this.columns[by].value;
@@ -242,17 +262,26 @@ class SortedTable {
   }
 }
 
+/** The heading of a column; those of plans have the plans' names. */
+const headingOf = ({ heading, plan }) => (plan === undefined ? heading : `${heading}, ${planNames()[plan]}`);
+
 const textCell = (text) => make("td", { textContent: text });
 const numberCell = (text) => make("td", { className: "number", textContent: text });
 
 /** The columns that all tables have: the risk index with its interval, counts, and a bar. */
 const COMMON = [
   { heading: "Risk index", value: (group) => group.risk, cell: (group) => numberCell(number(group.risk, 2)) },
-  { heading: "95 % interval", cell: (group) => numberCell(intervalOf(group).map((end) => number(end, 2)).join(" to ")) },
+  { heading: "95 % interval", single: true, cell: (group) => numberCell(intervalOf(group).map((end) => number(end, 2)).join(" to ")) },
   ...[2, 1, 0].map((severity) => ({ heading: SEVERITIES[severity], severity, value: (group) => group.counts[severity],
     cell: (group) => numberCell(number(group.counts[severity])) })),
 ];
 const BAR = { heading: "by severity", cell: shareBar };
+
+/** The risk index of a place in each of several plans. */
+const BY_PLAN = Array.from({ length: MOST_PLANS }, (_, plan) => {
+  const riskOf = (group) => group.rows.reduce((sum, row) => sum + (variantOf[column.run[row]] === plan ? risk[row] : 0), 0);
+  return { heading: "Risk index", plan, value: riskOf, cell: (group) => numberCell(number(riskOf(group), 2)) };
+});
 
 /** A first column whose names are buttons. */
 function nameColumn(heading, name, press, isPressed) {
@@ -266,12 +295,14 @@ function nameColumn(heading, name, press, isPressed) {
 }
 
 const hotSpots = new SortedTable(byId("spots"), [
-  { heading: "", text: true, cell: (group) => make("td", { className: "rank" }, make("span", { textContent: group.rank }), ...unfoldButton(group)) },
+  { heading: "", text: true, cell: (group) => make("td", { className: "rank" }, make("span", { textContent: plansShown().length ? "" : group.rank }), ...unfoldButton(group)) },
   nameColumn("Place", spotName, (group) => {
     choosePlace(filter.spot === group.place ? null : group.place, null);
     map.go(group.x, group.y, 120);
   }, (group) => filter.spot === group.place),
-  ...COMMON.slice(0, 2),
+  { ...COMMON[0], single: true },
+  COMMON[1],
+  ...BY_PLAN,
   { heading: "per 1,000 entering", entering: true, value: (group) => group.rate ?? -1, cell: (group) => numberCell(rateWords(group)) },
   ...COMMON.slice(2),
   { heading: "Mostly", text: true, value: (group) => usual(group.rows, manoeuvreOf), cell: (group) => textCell(inWords(usual(group.rows, manoeuvreOf)) || NOT_KNOWN) },
@@ -301,18 +332,19 @@ const choiceTable = (id, heading, name, names) => new SortedTable(byId(id), [
   nameColumn(heading, (group) => inWords(group.name),
     (group) => choose(name, filter[name] === names.indexOf(group.name) ? null : names.indexOf(group.name)),
     (group) => filter[name] !== null && filter[name] === names.indexOf(group.name)),
-  ...COMMON, BAR], 1);
+  { ...COMMON[0], single: true }, ...COMMON.slice(1), ...BY_PLAN, BAR], 1);
 const byManoeuvre = choiceTable("manoeuvres", "Manoeuvre", "manoeuvre", conflicts.manoeuvres);
 const byCause = choiceTable("causes", "Cause", "cause", CAUSES);
 
 /** Shows the tables of the rows that pass the filter. */
 function showSpots(rows) {
   const spots = spotRows(rows);
+  byId("hot").hidden = plansShown().length > MOST_PLANS;
   hotSpots.show(spots);
   const listed = spots.slice(0, MOST_SPOTS);
   byId("per").hidden = !spots.some((spot) => spot.entered);
-  const others = listed.slice(1).filter((spot) => mayOutrank(spot, listed[0])).length;
-  byId("doubt").textContent = others ? `The intervals of ${number(others)} of the ${number(listed.length - 1)} places after the first overlap its own: their ranks may be chance.` : "";
+  const isRanked = hasRisk && !plansShown().length;
+  byId("doubt").textContent = isRanked ? doubtWords(listed) : "";
   const ranked = (groupsOf) => [...grouped(rows, groupsOf)].map(([name, of_name]) => ({ name, ...sums(of_name) }))
     .sort((a, b) => (a.name === "") - (b.name === "") || b.risk - a.risk || b.rows.length - a.rows.length).map((group, place) => ({ ...group, rank: place + 1 }));
   byManoeuvre.show(ranked((row) => [manoeuvreOf(row)]));
