@@ -16,25 +16,22 @@ use closecall::util::units::Metre;
 use closecall_run::output::schema::LoggedConflict;
 use closecall_run::{Error, Result};
 
-/// This many of the worst conflicts are played.
-const PLAYED: usize = 20;
 /// Others are left out that never come this near to the conflict, in m: the page shows no more.
 const SHOWN: Metre = 50.0;
 /// Of a metre, a second and a metre per second.
 const HUNDREDTHS: f64 = 100.0;
 const THOUSANDTHS: f64 = 1000.0;
 
-/// The clips of the worst conflicts that have one, by run and `id`. Clips that are not as a run writes them are a note: the
+/// The clips of these conflicts that have one, by run and `id`. Clips that are not as a run writes them are a note: the
 /// report is whole without them.
 ///
 /// # Errors
 /// [`Error::File`] where a file cannot be read.
 pub(crate) fn of_worst(
-    worst_first: &[RunConflict],
+    worst: &[RunConflict],
     logs: &[PathBuf],
     notes: &mut Vec<String>,
 ) -> Result<FxHashMap<(u32, u64), Clip>> {
-    let worst = &worst_first[..worst_first.len().min(PLAYED)];
     let mut all = FxHashMap::default();
     for (run, log) in (0..).zip(logs) {
         let ids = worst.iter().filter(|one| one.run == run).map(|one| one.conflict.id).collect::<Vec<_>>();

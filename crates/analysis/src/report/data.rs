@@ -8,6 +8,7 @@ use serde_json::{Map, Value, json};
 use super::contact::parts;
 use super::movements::Movements;
 use super::streets::Streets;
+use super::tiles::TileUrl;
 use super::{clips, faults, page_net, reading, remarks};
 use crate::dataset::Conflicts;
 use crate::dataset::kept::RunConflict;
@@ -19,8 +20,23 @@ use closecall::traffic::net::{EdgeFunction, Net};
 use closecall_run::Result;
 use closecall_run::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value as Cell};
 
-/// The worst conflicts, this many, can be drawn with both rectangles and paths.
-const DRAWN: usize = 2_000;
+/// How many of the worst conflicts a page has more of than a row.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Details {
+    /// So many can be drawn with both rectangles and paths.
+    drawn: usize,
+    /// So many are played, as long as their clips take no more than `clip_bytes`.
+    played: usize,
+    clip_bytes: usize,
+}
+
+impl Details {
+    /// Those of the report.
+    pub const REPORT: Self = Self { drawn: 2_000, played: 100, clip_bytes: 2_000_000 };
+    /// Those of the summary: the worst one's clip, which says when the two touched.
+    pub const SUMMARY: Self = Self { drawn: 0, played: 1, clip_bytes: 2_000_000 };
+}
+
 /// The number column that nothing on the page shows.
 const NOT_SHOWN: &str = "clearance";
 
@@ -29,17 +45,33 @@ const NOT_SHOWN: &str = "clearance";
 ///
 /// # Errors
 /// Those of reading the clips.
-pub fn json(found: Conflicts, before: Option<Value>) -> Result<String> {
+pub(super) fn json(
+    found: Conflicts,
+    before: Option<Value>,
+    details: Details,
+    tiles: Option<&TileUrl>,
+) -> Result<String> {
     let Conflicts { logs, records, variants, mut ground, mut conflicts, seen, set_aside, filter, scope, .. } = found;
-    let clips = clips::of_worst(&conflicts, &logs, &mut ground.notes)?;
+    let clips = clips::of_worst(&conflicts[..conflicts.len().min(details.played)], &logs, &mut ground.notes)?;
     let key = |one: &RunConflict| (one.run, one.conflict.id);
-    let drawn = conflicts.iter().take(DRAWN).map(key).collect::<FxHashSet<_>>();
+    let mut played = FxHashMap::default();
+    let mut bytes = 0;
+    for one in &conflicts {
+        let Some(clip) = clips.get(&key(one)) else { continue };
+        let json = clips::json(clip, &one.conflict, ground.net.as_ref());
+        bytes += json.to_string().len();
+        if bytes > details.clip_bytes {
+            break;
+        }
+        played.insert(key(one), json);
+    }
+    drop(clips);
+    let drawn = conflicts.iter().take(details.drawn).map(key).collect::<FxHashSet<_>>();
     conflicts.sort_unstable_by_key(key);
     let drawn = (0..).zip(&conflicts).filter(|(_, one)| drawn.contains(&key(one))).filter_map(drawing);
     let drawn = drawn.collect::<Vec<_>>();
     let net = ground.net.as_ref();
-    let clip =
-        |(row, one): (usize, &RunConflict)| Some(json!([row, clips::json(clips.get(&key(one))?, &one.conflict, net)]));
+    let clip = |(row, one): (usize, &RunConflict)| Some(json!([row, played.remove(&key(one))?]));
     let played = (0..).zip(&conflicts).filter_map(clip).collect::<Vec<_>>();
     let data = json!({
         "version": env!("CARGO_PKG_VERSION"),
@@ -50,6 +82,7 @@ pub fn json(found: Conflicts, before: Option<Value>) -> Result<String> {
         "reading": reading::json(&records),
         "remarks": remarks::json(&records),
         "scope": scope,
+        "tiles": tiles.map(|tiles| tiles.json(net)).transpose()?,
         "runs": runs(&logs, records),
         "variants": variants.iter().map(|variant| json!({ "name": variant.name, "runs": variant.runs })).collect::<Vec<_>>(),
         "defaults": Options::default(),
@@ -79,7 +112,9 @@ fn push(text: &mut String, json: &str) {
 /// The runs that the report compares with: how the rates differ, and where their conflicts are.
 pub fn before(effects: &Effects, found: &Conflicts) -> Value {
     let conflicts = || found.conflicts.iter().map(|one| &one.conflict);
-    let probability = |conflict: &LoggedConflict| rounded(conflict.crash_probability.unwrap_or_default(), 5);
+    // What is not traffic is no danger, on either side.
+    let of_traffic = |conflict: &LoggedConflict| conflict.crash_probability.filter(|_| conflict.artefact.is_empty());
+    let probability = |conflict: &LoggedConflict| rounded(of_traffic(conflict).unwrap_or_default(), 5);
     json!({
         "effects": effects,
         "x": conflicts().map(|conflict| rounded(conflict.x, 1)).collect::<Vec<_>>(),
@@ -282,6 +317,8 @@ mod tests {
                 filter: None,
                 scope: Default::default(),
             },
+            None,
+            Details::REPORT,
             None,
         )
         .unwrap();

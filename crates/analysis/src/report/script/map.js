@@ -3,8 +3,6 @@
 
 /** From more conflicts than this on, the map shows the density at first. */
 const FEW = 200;
-/** This many of the most dangerous places have a number on the map. */
-const MOST_BADGES = 3;
 const MODE_WORDS = { density: "risk index", points: "each conflict", difference: "after − before" };
 
 /** The numbers of the most dangerous places, each above its heaviest hexagon or in the middle of its conflicts. */
@@ -73,7 +71,7 @@ const map = {
       xAxis: this.axes.xAxis,
       yAxis: this.axes.yAxis,
       dataZoom: [{ id: "x", xAxisIndex: 0, ...zoom }, { id: "y", yAxisIndex: 0, ...zoom }],
-      series: [...(net ? [roadsSeries()] : []), this.series(rows)],
+      series: [...(data.tiles ? [tiles.series()] : []), ...(net ? [roadsSeries()] : []), this.series(rows)],
     });
     document.querySelectorAll("input[name=mode]").forEach((button) => { button.checked = button.value === this.mode; });
     this.point(null);
@@ -254,6 +252,7 @@ const map = {
     }
     const circled = { points: "Circled numbers: the first places of the table, whole junctions and edges",
       density: "Circled numbers: the first places of the table, whole junctions and edges, each at its hexagon with the most" }[this.mode];
-    byId("legend").replaceChildren(words[this.mode], ...entries, ...(circled && numbered(this.rows).length ? [make("span", { className: "said", textContent: circled })] : []));
+    const background = data.tiles ? [make("span", { className: "said", textContent: data.tiles.by })] : [];
+    byId("legend").replaceChildren(words[this.mode], ...entries, ...background, ...(circled && numbered(this.rows).length ? [make("span", { className: "said", textContent: circled })] : []));
   },
 };

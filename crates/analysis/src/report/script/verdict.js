@@ -1,5 +1,7 @@
 // The verdict: the tiles, and where it is most dangerous and why. Each sentence is made where its condition holds.
 
+/** This many of the most dangerous places are named, and have a number on the map. */
+const MOST_BADGES = 3;
 /** This many plans have a row or a column. */
 const MOST_VARIANTS = 12;
 
