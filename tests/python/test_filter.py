@@ -90,17 +90,22 @@ def test_a_period_has_rates_per_hour_only(town: Path) -> None:
     assert group["per_vehicle_kilometre"] is None
 
 
-def test_a_click_on_the_map_filters_by_the_place(browser: Any, town: Path) -> None:
+def test_a_click_on_the_map_opens_a_conflict_and_filters_by_a_hexagon(browser: Any, town: Path) -> None:
     opened = Opened(browser, town / "report.html", view="map=points")
     worst = opened.page.evaluate("worstRows(shownRows(false), 1)[0]")
     script = "(row) => map.chart.convertToPixel({ gridIndex: 0 }, [column.x[row], column.y[row]])"
     x, y = opened.page.evaluate(script, worst)
     opened.page.click("#map", position={"x": x, "y": y})
-    spot = opened.page.evaluate(f"conflicts.spots[spotOf({worst})]")
+    row = opened.page.evaluate("opened.row")
+    number, spot = opened.page.evaluate(f"[column.id[{row}], conflicts.spots[spotOf({row})]]")
+    assert f"no. {number}" in opened.text("#opened h3") and opened.page.url.endswith(f"conflict={number}")
+    assert opened.page.evaluate("shownRows().length") > 1, "the rest stays"
+    opened.page.click("text=Only this place")
     assert opened.text("#there") == spot
     assert f"where={spot.replace(' ', ':')}" in opened.page.url
     opened.page.click("#anywhere")
-    assert opened.page.is_hidden("#here")
+    opened.page.click("text=Close")
+    assert opened.page.is_hidden("#here") and opened.page.is_hidden("#opened")
     opened.page.check("input[value=density]")
     opened.page.click("#map", position={"x": x, "y": y})
     assert "m around" in opened.text("#there")
