@@ -104,7 +104,7 @@ def test_a_click_on_the_map_opens_a_conflict_and_filters_by_a_hexagon(browser: A
     assert opened.text("#there") == spot
     assert f"where={spot.replace(' ', ':')}" in opened.page.url
     opened.page.click("#anywhere")
-    opened.page.click("text=Close")
+    opened.page.click("#opened button:text-is('Close')")
     assert opened.page.is_hidden("#here") and opened.page.is_hidden("#opened")
     opened.page.check("input[value=density]")
     opened.page.click("#map", position={"x": x, "y": y})

@@ -29,9 +29,8 @@ def test_a_report_draws_without_errors_or_network_requests(browser: Any, town: P
     assert len(opened.page.query_selector_all("#distributions .chart")) == 6
     artefacts = Counter(row["artefact"] for row in rows(town / "log" / "conflicts.csv") if row["artefact"])
     why = ", ".join(f"{count} {artefact}" for artefact, count in sorted(artefacts.items()))
-    assert f"set aside {artefacts.total()} that are not traffic's: {why} (--artefacts counts them in)" in opened.text(
-        "#notes"
-    )
+    aside = f"set aside {artefacts.total()} that are not traffic's: {why} (--artefacts shows them)"
+    assert aside in opened.text("#notes")
     card = opened.page.locator("#worst li").first
     assert card.locator("output").inner_text() == "worst step"
     assert f"closecall show {town / 'log'} " in str(card.text_content())
@@ -411,7 +410,7 @@ def test_tables_fit_a_screen_of_1400_pixels(browser: Any, named_town: Path) -> N
 def test_places_have_the_names_of_their_streets(browser: Any, named_town: Path) -> None:
     opened = Opened(browser, named_town / "report.html")
     name = opened.page.locator("#verdict strong").first.inner_text()
-    assert re.fullmatch(r".* Street.* \((junction|edge) \S+\)", name)
+    assert re.fullmatch(r"Street of .* \((junction|edge) \S+\)", name)
     assert "Street" in opened.text("#spots") and "Street" in opened.text("#worst")
     opened.page.locator("#spots td:nth-child(2) button").first.click()
     assert "Street" in opened.text("#there") and re.search("where=(junction|edge):", opened.page.url)

@@ -17,7 +17,7 @@ use closecall::traffic::net::Net;
 use closecall::util::units::Second;
 use closecall_run::Result;
 use closecall_run::output::schema::LoggedConflict;
-use closecall_run::output::summary::SetAside;
+use closecall_run::output::summary::{SetAside, in_words};
 use kept::{KeptConflicts, RunConflict};
 use nets::Ground;
 
@@ -119,7 +119,7 @@ pub fn read(
     ground.notes.append(&mut variants.notes);
     ground.notes.extend(lost.iter().map(ToString::to_string));
     let aside = set_aside_in_words(&set_aside);
-    ground.notes.extend(aside.as_ref().map(|words| format!("The runs have {words}.")));
+    ground.notes.extend(in_words(&set_aside).map(|words| format!("The runs have {words} (--artefacts shows them).")));
     let seen = worst.seen();
     if !filter.is_empty() {
         let passed = if seen == 0 { "none".to_owned() } else { seen.to_string() };

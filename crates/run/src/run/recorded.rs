@@ -115,9 +115,10 @@ impl RecordedRun {
         let (faults, road_users) = self.run.net_faults();
         let log = self.run.writing.log.as_ref();
         let faults_written = log.map_or(Ok(()), |log| log.write_net_faults(&faults));
-        // In `run.json`, no remark names a place that may change.
-        let [said, faults] =
-            [log.map(Log::folder), None].map(|folder| net_faults_csv::in_words(&faults, road_users, folder));
+        let said = net_faults_csv::in_words(&faults, road_users, log.map(Log::folder));
+        // `run.json` has one remark for both lines, which names no place that may change.
+        let lines = net_faults_csv::in_words(&faults, road_users, None);
+        let faults = lines.into_iter().reduce(|one, other| Remark { text: format!("{one}; {other}"), ..one });
         let mut summary = self.run.summary.clone();
         summary.left_out.extend(left_out);
         summary.spent = spent;
@@ -125,7 +126,7 @@ impl RecordedRun {
         let opening =
             self.record.as_ref().map(|_| self.run.opening_remarks(self.run.step_length())).unwrap_or_default();
         let mut recorded_summary = summary.clone();
-        recorded_summary.remarks = [opening, summary.remarks.clone(), faults, remarks.clone()].concat();
+        recorded_summary.remarks = [opening, summary.remarks.clone(), Vec::from_iter(faults), remarks.clone()].concat();
         summary.remarks.extend(said.into_iter().chain(remarks).chain(self.earlier_log()));
         self.run.summary.clone_from(&summary);
         let recorded = match (self.run.writing.log.take(), self.record.take()) {

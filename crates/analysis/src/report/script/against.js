@@ -47,7 +47,7 @@ function showAgainst() {
   const ticks = drawing("svg", { width: PLOT.width, height: 14, viewBox: `0 0 ${PLOT.width} 14`, "aria-hidden": "true" },
     ...RATIO_TICKS.map((tick) => drawing("text", { x: ratioPlace(tick), y: 11, "text-anchor": "middle", style: "fill: var(--faint); font-size: 11px" },
       tick < 1 ? `1/${1 / tick}` : String(tick))));
-  const head = make("tr", {}, ...["", "After", "Before", "Ratio", "95 % interval"].map((textContent, place) =>
+  const head = make("tr", {}, ...["What", "After", "Before", "Ratio", "95 % interval"].map((textContent, place) =>
     make("th", { textContent, scope: "col", className: place ? "number" : "" })), make("th", { scope: "col" }, make("span", { className: "unseen", textContent: "Ratio and interval, drawn" }), ticks));
   const lines = [];
   let by = "";

@@ -3,10 +3,10 @@
 /** The scenarios as a title. */
 const titleWords = () => (scenarioNames.length > MOST_PLANS ? `${scenarioNames.length} scenarios` : scenarioNames.join(" and "));
 
-/** What was simulated, in a line. */
-function subjectWords() {
+/** What was simulated, in a line; with the scenarios' files, or their names. */
+function subjectWords(hasFiles) {
   const records = data.runs.filter((run) => run.summary);
-  const scenarios = [...new Set(records.map((run) => run.scenario))];
+  const scenarios = hasFiles ? [...new Set(records.map((run) => run.scenario))] : scenarioNames;
   const runs = data.runs.length === 1 ? "one run" : `${number(data.runs.length)} runs`;
   const more = scenarios.length > 3 ? ` and ${scenarios.length - 3} more` : "";
   const sum = (pick) => records.reduce((all, run) => all + pick(run.summary), 0);
@@ -17,10 +17,10 @@ function subjectWords() {
   return `Traffic conflicts in ${scenarios.slice(0, 3).join(", ") || data.runs.map((run) => run.folder)[0]}${more}: ${runs}${traffic}`;
 }
 
-function showHeader() {
+function showHeader(hasFiles = true) {
   document.title = `${titleWords()} – conflicts`;
   byId("name").textContent = titleWords();
-  byId("subject").textContent = subjectWords();
+  byId("subject").textContent = subjectWords(hasFiles);
   const charts = typeof echarts === "undefined" ? "" : ` Charts: Apache ECharts ${echarts.version} (Apache-2.0).`;
   byId("maker").textContent = `Made by closecall ${data.version}.${charts}`;
 }

@@ -83,7 +83,7 @@ function shortenRemarks() {
 }
 
 function startSummary() {
-  showHeader();
+  showHeader(false);
   showRemarks();
   shortenRemarks();
   showReading();

@@ -102,6 +102,7 @@ function doubtWords(listed) {
   const after = listed.length - 1;
   if (!others) return "";
   if (after === 1) return "The intervals of the two places overlap: their order may be chance.";
+  if (others === after && after === 2) return "The intervals of both places after the first overlap its own: their ranks may be chance.";
   if (others === after) return `The intervals of all ${number(after)} places after the first overlap its own: their ranks may be chance.`;
   return others === 1 ? `The interval of one of the ${number(after)} places after the first overlaps its own: its rank may be chance.`
     : `The intervals of ${number(others)} of the ${number(after)} places after the first overlap its own: their ranks may be chance.`;
@@ -136,12 +137,18 @@ function showVerdict(rows) {
   const plans = plansShown();
   const element = byId("verdict");
   element.classList.toggle("side", plans.length > 0);
-  if (!plans.length) element.replaceChildren(...(data.before ? [make("p", { className: "note", textContent: "After the change:" })] : []), ...verdictOn(rows, spotRows(rows), true));
-  else if (plans.length > MOST_PLANS) element.replaceChildren(`Of ${number(plans.length)} plans: choose one in the filter to see its most dangerous places.`);
-  else {
+  if (plans.length > MOST_PLANS) {
+    const how = byId("filter") ? "choose one in the filter to see its most dangerous places" : "the report shows the most dangerous places of each";
+    element.replaceChildren(`Of ${number(plans.length)} plans: ${how}.`);
+  } else if (plans.length) {
     element.replaceChildren(...plans.map((_, plan) => {
       const of_plan = rowsOfPlan(rows, plan);
       return make("div", {}, make("h3", { textContent: planNames()[plan] }), ...verdictOn(of_plan, spotsOf(of_plan, plan), false));
     }));
+  } else {
+    const said = verdictOn(rows, spotRows(rows), true);
+    // With runs to compare with, the page shows those after the change.
+    const after = data.before && said.length ? [make("p", { className: "note", textContent: "After the change:" })] : [];
+    element.replaceChildren(...after, ...said);
   }
 }
