@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::filter::{ConflictFilter, set_aside_in_words};
+use super::filter::{ConflictFilter, NamedPlaces, set_aside_in_words};
 use super::logged::{ConflictReader, LostRows, Progress, Reading, log_folders};
 use super::variants::{Variant, Variants};
 use closecall::detection::kind::{Kind, Severity};
@@ -42,6 +42,8 @@ pub struct Conflicts {
     pub(super) filter: Option<String>,
     /// Which part of the traffic they are of.
     pub(super) scope: Scope,
+    /// The places with names of their own.
+    pub(super) named: Option<NamedPlaces>,
     /// The logs that lack rows.
     pub(super) lost: Vec<LostRows>,
 }
@@ -131,10 +133,11 @@ pub fn read(
         summaries.for_each(|summary| drop(summary.remove("entered")));
     }
     let scope = Scope { place: !filter.places.is_empty(), period: filter.has_period(), artefacts: filter.artefacts };
+    let named = filter.named.clone();
     let filter = (!filter.is_empty()).then(|| filter.to_string());
     let conflicts = worst.into_sorted();
     let variants = variants.all;
-    Ok(Conflicts { logs, records, variants, ground, conflicts, seen, set_aside: aside, filter, scope, lost })
+    Ok(Conflicts { logs, records, variants, ground, conflicts, seen, set_aside: aside, filter, scope, named, lost })
 }
 
 impl Conflicts {

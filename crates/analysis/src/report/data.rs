@@ -12,6 +12,7 @@ use super::tiles::TileUrl;
 use super::{clips, faults, page_net, reading, remarks};
 use crate::dataset::Conflicts;
 use crate::dataset::kept::RunConflict;
+use crate::filter::NamedPlaces;
 use crate::statistics::Effects;
 use closecall::detection::kind::{Kind, Severity};
 use closecall::events::Cause;
@@ -51,7 +52,8 @@ pub(super) fn json(
     details: Details,
     tiles: Option<&TileUrl>,
 ) -> Result<String> {
-    let Conflicts { logs, records, variants, mut ground, mut conflicts, seen, set_aside, filter, scope, .. } = found;
+    let Conflicts { logs, records, variants, mut ground, mut conflicts, seen, set_aside, filter, scope, named, .. } =
+        found;
     let clips = clips::of_worst(&conflicts[..conflicts.len().min(details.played)], &logs, &mut ground.notes)?;
     let key = |one: &RunConflict| (one.run, one.conflict.id);
     let mut played = FxHashMap::default();
@@ -82,6 +84,7 @@ pub(super) fn json(
         "reading": reading::json(&records),
         "remarks": remarks::json(&records),
         "scope": scope,
+        "places": named.as_ref().map(|named| &*named.all),
         "tiles": tiles.map(|tiles| tiles.json(net)).transpose()?,
         "runs": runs(&logs, records),
         "variants": variants.iter().map(|variant| json!({ "name": variant.name, "runs": variant.runs })).collect::<Vec<_>>(),
@@ -94,7 +97,7 @@ pub(super) fn json(
         "set_aside": set_aside,
     });
     let mut text = "{\"conflicts\":".to_owned();
-    columns(&mut text, &conflicts, drawn, net);
+    columns(&mut text, &conflicts, drawn, net, named.as_ref());
     drop(conflicts);
     text.push(',');
     push(&mut text, &data.to_string()[1..]);
@@ -151,7 +154,7 @@ impl<'a> Words<'a> {
 }
 
 /// Appends the conflicts, a column after the other, and the lists of the words that repeat.
-fn columns(text: &mut String, rows: &[RunConflict], drawn: Vec<Value>, net: Option<&Net>) {
+fn columns(text: &mut String, rows: &[RunConflict], drawn: Vec<Value>, net: Option<&Net>, named: Option<&NamedPlaces>) {
     text.push_str("{\"columns\":{");
     let mut is_first = true;
     let mut add = |name: &str, column: Value| {
@@ -172,7 +175,9 @@ fn columns(text: &mut String, rows: &[RunConflict], drawn: Vec<Value>, net: Opti
     let [mut manoeuvres, mut causes] = <[Words; 2]>::default();
     add("manoeuvre", conflicts().map(|conflict| manoeuvres.place(&conflict.manoeuvre)).collect());
     add("cause", conflicts().map(|conflict| causes.place(&conflict.cause)).collect());
-    let mut lanes = Words::default();
+    let [mut lanes, mut areas] = <[Words; 2]>::default();
+    let area = |conflict| named.and_then(|named| named.of(conflict)).map_or("", |place| &place.name);
+    add("area", conflicts().map(|conflict| areas.place(area(conflict))).collect());
     add("lane", conflicts().map(|conflict| lanes.place(&conflict.lane)).collect());
     add("id", conflicts().map(|conflict| conflict.id).collect());
     add("run", rows.iter().map(|row| row.run).collect());
@@ -216,6 +221,7 @@ fn columns(text: &mut String, rows: &[RunConflict], drawn: Vec<Value>, net: Opti
         "artefacts": artefacts.list,
         "manoeuvres": manoeuvres.list,
         "causes": causes.list,
+        "areas": areas.list,
         "lanes": lanes.list,
         "spots": places.list,
         "streets": places.list.iter().map(|spot| streets.name(spot)).collect::<Vec<_>>(),
@@ -316,6 +322,7 @@ mod tests {
                 set_aside: None,
                 filter: None,
                 scope: Default::default(),
+                named: None,
             },
             None,
             Details::REPORT,

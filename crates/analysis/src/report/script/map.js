@@ -22,6 +22,17 @@ function badgesOf(view, rows, mode) {
   });
 }
 
+/** The outlines of the named places that are areas, with their names. */
+function outlines(view) {
+  const areas = (data.places || []).filter(({ polygon }) => polygon.length);
+  return areas.flatMap(({ name, polygon }) => {
+    const points = polygon.map(([x, y]) => [view.x + (x - view.left) * view.scale, view.y + view.height - (y - view.bottom) * view.scale]);
+    const top = points.reduce((highest, point) => (point[1] < highest[1] ? point : highest));
+    return [{ type: "polygon", z2: 15, silent: true, shape: { points }, style: { fill: null, stroke: colours.ink, lineWidth: 1.5, lineDash: [8, 5] } },
+      { type: "text", z2: 16, silent: true, x: top[0], y: top[1] - 3, style: { text: name, fill: colours.ink, stroke: colours.ground, lineWidth: 3, font: `600 12px ${FONT}`, align: "center", verticalAlign: "bottom" } }];
+  });
+}
+
 /** The map of the conflicts that pass the filter. */
 const map = {
   element: byId("map"),
@@ -92,7 +103,7 @@ const map = {
         if (this.view.scale >= CLOSE !== wasClose) this.showLegend();
         // The table ranks the places by what happens after, not by the change.
         const badges = this.mode === "difference" ? [] : badgesOf(this.view, rows, this.mode);
-        const over = [...badges, ...opened.marks(this.view), ...faults.marks(this.view), ...scaleBar(1 / this.view.scale, this.view.height)];
+        const over = [...outlines(this.view), ...badges, ...opened.marks(this.view), ...faults.marks(this.view), ...scaleBar(1 / this.view.scale, this.view.height)];
         if (this.mode !== "points") {
           return { type: "group", $mergeChildren: false, children: [...density.children(this.view, rows, this.mode === "difference"), ...over] };
         }

@@ -5,7 +5,7 @@
 const MOST_PLANS = 4;
 
 /** Whether only conflicts at chosen places are shown. */
-const isOfPlace = () => data.scope.place || filter.spot !== null || filter.circle !== null;
+const isOfPlace = () => data.scope.place || filter.spot !== null || filter.circle !== null || filter.area !== null;
 /** Whether only conflicts of a period are shown: of its traffic nothing is known. */
 const isOfPeriod = () => data.scope.period || Number.isFinite(filter.from) || Number.isFinite(filter.to);
 /** Whether these are not all conflicts: the filter of the page, or of the command, leaves some out. */

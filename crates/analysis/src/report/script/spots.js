@@ -286,7 +286,7 @@ const BY_PLAN = Array.from({ length: MOST_PLANS }, (_, plan) => {
 /** A first column whose names are buttons. */
 function nameColumn(heading, name, press, isPressed) {
   return { heading, text: true, value: name, cell: (group) => {
-    if (group.name === "") return make("td", { textContent: NOT_KNOWN });
+    if (group.name === "") return make("td", { textContent: heading === "Named place" ? "elsewhere" : NOT_KNOWN });
     const button = make("button", { type: "button", textContent: name(group) });
     button.setAttribute("aria-pressed", isPressed(group));
     button.onclick = () => press(group);
@@ -334,6 +334,7 @@ const choiceTable = (id, heading, name, names) => new SortedTable(byId(id), [
     (group) => filter[name] !== null && filter[name] === names.indexOf(group.name)),
   { ...COMMON[0], single: true }, ...COMMON.slice(1), ...BY_PLAN, BAR], 1);
 const byManoeuvre = choiceTable("manoeuvres", "Manoeuvre", "manoeuvre", conflicts.manoeuvres);
+const byArea = choiceTable("areas", "Named place", "area", conflicts.areas);
 const byCause = choiceTable("causes", "Cause", "cause", CAUSES);
 
 /** Shows the tables of the rows that pass the filter. */
@@ -347,6 +348,8 @@ function showSpots(rows) {
   byId("doubt").textContent = isRanked ? doubtWords(listed) : "";
   const ranked = (groupsOf) => [...grouped(rows, groupsOf)].map(([name, of_name]) => ({ name, ...sums(of_name) }))
     .sort((a, b) => (a.name === "") - (b.name === "") || b.risk - a.risk || b.rows.length - a.rows.length).map((group, place) => ({ ...group, rank: place + 1 }));
+  byId("ofareas").hidden = !data.places;
+  if (data.places) byArea.show(ranked((row) => [conflicts.areas[column.area[row]]]));
   byManoeuvre.show(ranked((row) => [manoeuvreOf(row)]));
   byCause.show(ranked((row) => (causeNames(row).length ? causeNames(row) : [""])));
 }
