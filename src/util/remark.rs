@@ -41,7 +41,7 @@ pub enum RemarkCode {
     UnknownLanes,
     /// The routes of a recording have gaps.
     UnknownRoutes,
-    /// A recording has elements that are no road users.
+    /// A recording has elements other than road users.
     OtherElements,
     /// Speeds of a recording are below zero.
     NoisySpeeds,

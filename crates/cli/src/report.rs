@@ -33,7 +33,7 @@ pub(crate) struct ReportArgs {
     /// Write one page for people who decide, to print or save as PDF from a browser: where, why, and what to know.
     #[arg(long)]
     summary: bool,
-    /// Lay a map under the conflicts, whose tiles the page then asks this server for. Without it a page asks nobody.
+    /// Background map: the page requests its tiles from this server. Without it a page sends no requests.
     #[arg(long, value_name = "URL", conflicts_with = "summary")]
     tiles: Option<TileUrl>,
     #[command(flatten)]

@@ -80,7 +80,7 @@ impl ConflictFilter {
         }
     }
 
-    /// Whether a place is one that has its own name, and the conflict is there.
+    /// Whether a place has a name of its own, and the conflict is there.
     fn is_at(&self, place: &Place, conflict: &LoggedConflict) -> bool {
         let Place::Named { part: None, id } = place else { return false };
         self.named.as_ref().and_then(|named| named.named(id)).is_some_and(|named| named.holds(conflict))

@@ -7,6 +7,7 @@ use rustc_hash::FxHashMap;
 use serde_json::{Value, json};
 
 use crate::dataset::kept::RunConflict;
+use crate::dataset::nets::Ground;
 use crate::playback::{clips, signal_bar, signal_colour};
 use closecall::detection::kind::Severity;
 use closecall::events::{Clip, ClipUser};
@@ -22,16 +23,17 @@ const SHOWN: Metre = 50.0;
 const HUNDREDTHS: f64 = 100.0;
 const THOUSANDTHS: f64 = 1000.0;
 
-/// The clips of these conflicts that have one, by run and `id`. Clips that are not as a run writes them are a note: the
-/// report is whole without them.
+/// The clips of these conflicts that have one as JSON, by run and `id`, until they take this many bytes: those of the first
+/// ones. Clips that are not as a run writes them are a note: the report is whole without them.
 ///
 /// # Errors
 /// [`Error::File`] where a file cannot be read.
 pub(crate) fn of_worst(
     worst: &[RunConflict],
     logs: &[PathBuf],
-    notes: &mut Vec<String>,
-) -> Result<FxHashMap<(u32, u64), Clip>> {
+    most_bytes: usize,
+    ground: &mut Ground,
+) -> Result<FxHashMap<(u32, u64), Value>> {
     let mut all = FxHashMap::default();
     for (run, log) in (0..).zip(logs) {
         let ids = worst.iter().filter(|one| one.run == run).map(|one| one.conflict.id).collect::<Vec<_>>();
@@ -41,14 +43,23 @@ pub(crate) fn of_worst(
         match clips(log, &ids) {
             Ok(found) => all.extend(found.into_iter().map(|(id, clip)| ((run, id), clip))),
             Err(error @ Error::File { .. }) => return Err(error),
-            Err(error) => notes.push(format!("No playback: {error}.")),
+            Err(error) => ground.notes.push(format!("No playback: {error}.")),
         }
     }
-    Ok(all)
+    let mut bytes = 0;
+    let of = |one: &RunConflict| {
+        let key = (one.run, one.conflict.id);
+        Some((key, json(all.get(&key)?, &one.conflict, ground.net.as_ref())))
+    };
+    let fits = |(_, clip): &((u32, u64), Value)| {
+        bytes += clip.to_string().len();
+        bytes <= most_bytes
+    };
+    Ok(worst.iter().filter_map(of).take_while(fits).collect())
 }
 
 /// A clip as JSON. Times are in ms, places in cm, headings and times left in hundredths, speeds in cm/s.
-pub fn json(clip: &Clip, conflict: &LoggedConflict, net: Option<&Net>) -> Value {
+fn json(clip: &Clip, conflict: &LoggedConflict, net: Option<&Net>) -> Value {
     let at = Point::new(conflict.x, conflict.y);
     let is_near = |user: &ClipUser| {
         let places = user.x.iter().zip(&user.y).filter_map(|(x, y)| x.zip(*y));

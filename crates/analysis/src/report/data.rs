@@ -21,12 +21,12 @@ use closecall::traffic::net::{EdgeFunction, Net};
 use closecall_run::Result;
 use closecall_run::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value as Cell};
 
-/// How many of the worst conflicts a page has more of than a row.
+/// For how many of the worst conflicts a page has more than a row of values.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Details {
-    /// So many can be drawn with both rectangles and paths.
+    /// Conflicts with both rectangles and paths.
     drawn: usize,
-    /// So many are played, as long as their clips take no more than `clip_bytes`.
+    /// Conflicts with clips, as long as these take no more than `clip_bytes`.
     played: usize,
     clip_bytes: usize,
 }
@@ -54,20 +54,9 @@ pub(super) fn json(
 ) -> Result<String> {
     let Conflicts { logs, records, variants, mut ground, mut conflicts, seen, set_aside, filter, scope, named, .. } =
         found;
-    let clips = clips::of_worst(&conflicts[..conflicts.len().min(details.played)], &logs, &mut ground.notes)?;
+    let worst = &conflicts[..conflicts.len().min(details.played)];
+    let mut played = clips::of_worst(worst, &logs, details.clip_bytes, &mut ground)?;
     let key = |one: &RunConflict| (one.run, one.conflict.id);
-    let mut played = FxHashMap::default();
-    let mut bytes = 0;
-    for one in &conflicts {
-        let Some(clip) = clips.get(&key(one)) else { continue };
-        let json = clips::json(clip, &one.conflict, ground.net.as_ref());
-        bytes += json.to_string().len();
-        if bytes > details.clip_bytes {
-            break;
-        }
-        played.insert(key(one), json);
-    }
-    drop(clips);
     let drawn = conflicts.iter().take(details.drawn).map(key).collect::<FxHashSet<_>>();
     conflicts.sort_unstable_by_key(key);
     let drawn = (0..).zip(&conflicts).filter(|(_, one)| drawn.contains(&key(one))).filter_map(drawing);
@@ -115,7 +104,7 @@ fn push(text: &mut String, json: &str) {
 /// The runs that the report compares with: how the rates differ, and where their conflicts are.
 pub fn before(effects: &Effects, found: &Conflicts) -> Value {
     let conflicts = || found.conflicts.iter().map(|one| &one.conflict);
-    // What is not traffic is no danger, on either side.
+    // An artefact is not a danger, on either side.
     let of_traffic = |conflict: &LoggedConflict| conflict.crash_probability.filter(|_| conflict.artefact.is_empty());
     let probability = |conflict: &LoggedConflict| rounded(of_traffic(conflict).unwrap_or_default(), 5);
     json!({

@@ -61,6 +61,7 @@ const REPORT: Page = Page {
         include_str!("script/faults.js"),
         include_str!("script/charts.js"),
         include_str!("script/movements.js"),
+        include_str!("script/intervals.js"),
         include_str!("script/spots.js"),
         include_str!("script/verdict.js"),
         include_str!("script/clip.js"),
@@ -87,6 +88,7 @@ const SUMMARY: Page = Page {
         include_str!("script/roads.js"),
         include_str!("script/words.js"),
         include_str!("script/movements.js"),
+        include_str!("script/intervals.js"),
         include_str!("script/spots.js"),
         include_str!("script/verdict.js"),
         include_str!("script/clip.js"),
@@ -124,7 +126,7 @@ pub struct Request<'a> {
     pub filter: &'a ConflictFilter,
     /// Whether to write one page for people who decide, instead of the report.
     pub is_summary: bool,
-    /// Where the page gets a background map from; none for a page that asks nobody for anything.
+    /// The server of the background map; none for a page that sends no requests.
     pub tiles: Option<&'a TileUrl>,
 }
 

@@ -13,7 +13,7 @@ pub fn json(records: &[Value]) -> Value {
         let of_run = of_run.filter_map(|remark| serde_json::from_value::<Remark>(remark.clone()).ok());
         let of_run = of_run.collect::<Vec<_>>();
         for (place, remark) in of_run.iter().enumerate() {
-            // The several lines of one code are told apart by their order.
+            // Several remarks of one code differ in their order.
             let nth = of_run[..place].iter().filter(|before| before.code == remark.code).count();
             let known = found.iter_mut().filter(|(known, ..)| known.code == remark.code).nth(nth);
             match known {

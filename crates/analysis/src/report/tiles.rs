@@ -1,5 +1,5 @@
-//! A background map, if one is asked for: squares of pictures from a server, which the page then asks for. Without `--tiles` a
-//! report asks nobody for anything.
+//! A background map for `--tiles`: the page requests its tiles from a server whenever it is opened. Without the option a
+//! report sends no requests.
 
 use std::str::FromStr;
 
@@ -41,15 +41,15 @@ impl TileUrl {
         self.0[path..].find('/').map_or(&self.0, |end| &self.0[..path + end])
     }
 
-    /// What the page needs: the address, whom to name, and where the net's metres are on the web mercator square.
+    /// What the page needs: the address, the attribution, and where the net's metres are on the web mercator square.
     ///
     /// # Errors
     /// [`Error::Value`] where there is no net, or its places have no longitude and latitude.
     pub(super) fn json(&self, net: Option<&Net>) -> Result<Value> {
-        let net = net.ok_or_else(|| Error::Value("--tiles: the report has no net to lay a map under".to_owned()))?;
+        let net = net.ok_or_else(|| Error::Value("--tiles: the report has no net for a background map".to_owned()))?;
         let square = square(net).ok_or_else(|| {
             Error::Value(
-                "--tiles: the net has no geographic projection, so that a map has no place under it".to_owned(),
+                "--tiles: the net has no geographic projection, so that its place on a map is not known".to_owned(),
             )
         })?;
         Ok(json!({ "url": self.0, "by": self.attribution(), "square": square }))
