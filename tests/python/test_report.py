@@ -370,6 +370,10 @@ def test_a_printed_page_is_white_and_has_no_controls(browser: Any, town: Path) -
         and opened.page.is_hidden(".controls")
         and opened.page.is_visible("#printed")
     )
+    # Swatches and bars are printed even if the printer leaves backgrounds out.
+    adjusted = "(selector) => getComputedStyle(document.querySelector(selector)).printColorAdjust"
+    for selector in ("#legend .key i", ".share span", "#figures div", "#verdict li > b"):
+        assert opened.page.evaluate(adjusted, selector) == "exact", selector
     opened.page.emulate_media(media="screen")
     opened.page.evaluate("dispatchEvent(new Event('afterprint'))")
     assert opened.page.evaluate("colours.critical") == dark
