@@ -78,15 +78,19 @@ fn of_severity(options: &Options) -> String {
 fn of_levels() -> String {
     let near_certain = format!(
         "*near certain*: they touched, even full braking at once would have been too late, a driver brakes too late with a \
-         probability of {} or more, or braking by {} m/s² or more was needed",
+         probability of {} or more, or braking by {} m/s² or more was needed, or was used where a crash would have changed a \
+         speed by less than {}",
         percent(NEAR_CERTAIN),
-        number(FULL)
+        number(FULL),
+        kmh(MODERATE)
     );
     let likely = format!(
-        "*likely*: that probability is {} or more, braking by {} m/s² or more was needed, or the second of two whose ways cross \
-         came less than {} s after the first, or passed it with less than {} m of room at {} or more",
+        "*likely*: that probability is {} or more, braking by {} m/s² or more was needed, or by {} m/s² was used with a contact \
+         ahead, or the second of two whose ways cross came less than {} s after the first, or passed it with less than {} m of \
+         room at {} or more",
         percent(LIKELY),
         number(EVASIVE),
+        number(FULL),
         number(LIKELY_PET),
         number(LIKELY_CLEARANCE),
         kmh(AT_SPEED)
