@@ -104,7 +104,7 @@ impl Checker {
                 let folder = folder.map_err(exception)?;
                 let recorded = RecordedRun::open(run, record, folder, &files).map_err(exception)?;
                 if let Some(line) = recorded.earlier_log() {
-                    say::line(py, &line)?;
+                    say::line(py, &line.text)?;
                 }
                 recorded
             }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
+use closecall::util::remark::Remark;
 use closecall_run::RunOptions;
 use closecall_run::input::tracks::{
     NOISE, RecordingFormat, TrackOptions, TrackOrigin, USUAL_NOISE, open as open_tracks,
@@ -165,8 +166,10 @@ fn check(
         }
     }
     run.finish()?;
-    let doubtful = [opened.doubtful(), &replay.remarks()].concat();
-    let remarks = [opened.missing(), opened.doubtful(), &opening, &replay.remarks()].concat();
+    let text = |remark: Remark| remark.text;
+    let at_end = replay.remarks().into_iter().map(text).collect::<Vec<_>>();
+    let remarks = opened.remarks().into_iter().chain(opening).map(text).chain(at_end.iter().cloned()).collect();
+    let doubtful = [opened.doubtful(), &at_end].concat();
     Ok(Checked { run, doubtful, remarks })
 }
 

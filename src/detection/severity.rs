@@ -46,30 +46,30 @@ pub enum Consequence {
 }
 
 /// From this crash probability on a crash is likely: a driver more likely brakes too late than not.
-const LIKELY: Probability = 0.5;
+pub const LIKELY: Probability = 0.5;
 /// From this crash probability on a crash is near certain: of twenty drivers one brakes in time (our choice).
-const NEAR_CERTAIN: Probability = 0.95;
+pub const NEAR_CERTAIN: Probability = 0.95;
 /// Evasive braking from this on, in m/s², if needed, makes a crash likely: more than the 0.45 g from which naturalistic
 /// studies look for near-crashes (Simons-Morton et al. 2012, doi:10.1093/aje/kwr440), and than SUMO's cars brake by default.
-pub(crate) const EVASIVE: MetrePerSecondSquared = 4.5;
+pub const EVASIVE: MetrePerSecondSquared = 4.5;
 /// Braking from this on, in m/s², is all that brakes do: the deceleration of full braking on a dry road (UN R13-H asks for
 /// 6.43 of new brakes; SUMO's cars have 9).
 pub const FULL: MetrePerSecondSquared = 7.0;
 /// Crossing paths that the second enters less than this after the first has left make a crash likely, in s (Allen, Shin and
 /// Cooper 1978 observe PETs; a PET below 0.5 s is the most severe class of Peesapati, Hunter and Rodgers 2013,
 /// doi:10.3141/2386-05, from 1 s on).
-pub(crate) const LIKELY_PET: Second = 0.5;
+pub const LIKELY_PET: Second = 0.5;
 /// Crossing paths passed with less room than this, in m …
-pub(crate) const LIKELY_CLEARANCE: Metre = 1.0;
+pub const LIKELY_CLEARANCE: Metre = 1.0;
 /// … at a speed relative to each other of at least this, in m/s, make a crash likely: the pace above which a collision
 /// injures a pedestrian (20 km/h; our choice).
-pub(crate) const AT_SPEED: MetrePerSecond = 20.0 / 3.6;
+pub const AT_SPEED: MetrePerSecond = 20.0 / 3.6;
 
 /// ΔV from which the consequence is moderate, in m/s: 10 km/h, from which on occupants report neck injuries (docs/model.md).
-pub(crate) const MODERATE: MetrePerSecond = 10.0 / 3.6;
+pub const MODERATE: MetrePerSecond = 10.0 / 3.6;
 /// Probability of a fatal injury from which on it is severe: one in a hundred; of occupants about 36 km/h of ΔV from the
 /// front, 24 from the side; of those that nothing protects, 26 (our choice).
-pub(crate) const SEVERE: Probability = 0.01;
+pub const SEVERE: Probability = 0.01;
 
 /// What the severity of a step depends on.
 #[derive(Clone, Copy, Debug)]

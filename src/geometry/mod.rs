@@ -9,6 +9,7 @@ pub mod contact;
 pub mod convex;
 pub mod exact;
 pub mod movement;
+pub mod outline;
 pub mod parry;
 pub mod polygon;
 pub mod polylines;

@@ -59,7 +59,7 @@ impl Options {
     }
 
     /// The thresholds of severity.
-    pub(crate) fn severity_thresholds(&self) -> SeverityThresholds {
+    pub fn severity_thresholds(&self) -> SeverityThresholds {
         match self.severity_rule {
             SeverityRule::Levels => SeverityThresholds::Levels,
             SeverityRule::TimeLeft => {

@@ -4,6 +4,7 @@ pub mod double_double;
 pub mod golden_section;
 pub mod index;
 pub mod limits;
+pub mod remark;
 pub mod threads;
 pub mod units;
 pub mod variants;

@@ -173,7 +173,14 @@ fn of_log(files: &[(&str, &[u8])]) {
         observed: Some(Observed { crashes: 14, years: 5.0 }),
     };
     let _ = Statistics::of(&request, &mut |_, _| ());
-    let report = report::Request { folders: &folders, against: &folders, net: None, filter: &filter };
+    let report = report::Request {
+        folders: &folders,
+        against: &folders,
+        net: None,
+        filter: &filter,
+        is_summary: false,
+        tiles: None,
+    };
     let _ = report::write(&report, &folder.path().join("report.html"), &mut |_, _| ());
     let plots = folder.path().join("plots");
     let (format, style) = (plot::PictureFormat::Svg, plot::PictureStyle::Screen);

@@ -24,7 +24,8 @@ fn said(run: impl FnOnce(Run) -> Run, net: &Arc<Net>, log: &Path) -> Vec<String>
     let mut recorded = RecordedRun::open(new, record, LogFolder::claim(log).unwrap(), &OutputFiles::default()).unwrap();
     recorded.run = run(std::mem::replace(&mut recorded.run, Run::new(&options, None).unwrap()));
     let summary = recorded.close(Ending::default()).unwrap();
-    summary.remarks.into_iter().filter(|line| line.starts_with("net faults") || line.starts_with("the worst")).collect()
+    let lines = summary.remarks.into_iter().map(|remark| remark.text);
+    lines.filter(|line| line.starts_with("net faults") || line.starts_with("the worst")).collect()
 }
 
 /// A person stands, and each of `cars` cars drives over it.
@@ -79,7 +80,7 @@ fn a_vehicle_that_waits_inside_is_one_fault() {
     assert!(drives.iter().all(|drive| drive.category == Category::Vehicle && drive.start > 0.0));
     let run = run_of(&net, &drives, &[], &[], 25.0);
     let summary = RecordedRun::in_memory(run).close(Ending::default()).unwrap();
-    let lines = summary.remarks.join("\n");
+    let lines = summary.remarks.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
     assert!(
         lines.contains("at 1 pair of lanes SUMO drives road users through each other, 1 time with 8 road users"),
         "{lines}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections import Counter
 from pathlib import Path
 from typing import Any, Callable
 
@@ -90,18 +91,53 @@ def test_a_period_has_rates_per_hour_only(town: Path) -> None:
     assert group["per_vehicle_kilometre"] is None
 
 
-def test_a_click_on_the_map_filters_by_the_place(browser: Any, town: Path) -> None:
+def test_a_click_on_the_map_opens_a_conflict_and_filters_by_a_hexagon(browser: Any, town: Path) -> None:
     opened = Opened(browser, town / "report.html", view="map=points")
     worst = opened.page.evaluate("worstRows(shownRows(false), 1)[0]")
     script = "(row) => map.chart.convertToPixel({ gridIndex: 0 }, [column.x[row], column.y[row]])"
     x, y = opened.page.evaluate(script, worst)
     opened.page.click("#map", position={"x": x, "y": y})
-    spot = opened.page.evaluate(f"conflicts.spots[spotOf({worst})]")
+    row = opened.page.evaluate("opened.row")
+    number, spot = opened.page.evaluate(f"[column.id[{row}], conflicts.spots[spotOf({row})]]")
+    assert f"no. {number}" in opened.text("#opened h3") and opened.page.url.endswith(f"conflict={number}")
+    assert opened.page.evaluate("shownRows().length") > 1, "the rest stays"
+    opened.page.click("text=Only this place")
     assert opened.text("#there") == spot
     assert f"where={spot.replace(' ', ':')}" in opened.page.url
     opened.page.click("#anywhere")
-    assert opened.page.is_hidden("#here")
+    opened.page.click("#opened button:text-is('Close')")
+    assert opened.page.is_hidden("#here") and opened.page.is_hidden("#opened")
     opened.page.check("input[value=density]")
     opened.page.click("#map", position={"x": x, "y": y})
     assert "m around" in opened.text("#there")
+    assert opened.complaints == []
+
+
+def test_places_have_names_of_their_own(browser: Any, town: Path, tmp_path: Path) -> None:
+    found = counted(town / "log")
+    busy = Counter(row["lane"].rsplit("_", 1)[0] for row in found if not row["lane"].startswith(":")).most_common(2)
+    [(edge, on_edge), _] = busy
+    at = [(float(row["x"]), float(row["y"])) for row in found if not row["lane"].startswith(f"{edge}_")]
+    middle = sorted(x for x, _ in at)[len(at) // 2] + 0.01
+    places = tmp_path / "places.toml"
+    places.write_text(
+        f'[[place]]\nname = "Main road"\nedges = ["{edge}"]\n'
+        f'[[place]]\nname = "West"\npolygon = [[-1e5, -1e5], [{middle}, -1e5], [{middle}, 1e5], [-1e5, 1e5]]\n'
+    )
+    west = sum(x < middle for x, _ in at)
+    words = ("stats", town / "log", "--places", places, "--format", "json")
+    groups = json.loads(closecall(*words, "--by", "place").stdout)["groups"]
+    expected = {"all": len(found), "Main road": on_edge, "West": west, "(none)": len(at) - west}
+    assert {group["group"]: group["count"] for group in groups} == expected
+    main = json.loads(closecall(*words, "--where", "Main road").stdout)
+    assert main["groups"][0]["count"] == on_edge and "--where Main road --places" in main["filter"]
+    refused = closecall("stats", town / "log", "--by", "place")
+    assert (refused.returncode, "--by place needs a file of --places" in refused.stderr) == (2, True)
+    assert closecall("report", town / "log", "--places", places, "-o", tmp_path / "r.html").returncode == 0
+    opened = Opened(browser, tmp_path / "r.html", view=ALL)
+    names = [line.split("\t")[0] for line in opened.text("#areas tbody").split("\n")]
+    assert sorted(names) == ["Main road", "West", "elsewhere"]
+    opened.page.click("#areas button:text-is('Main road')")
+    assert opened.text("#shown") == f"{on_edge} of {len(found)} conflicts" and "area=Main%20road" in opened.page.url
+    assert "Only a part of the net" in opened.text("#verdict")
     assert opened.complaints == []

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Callable
 
 import pytest
-from conftest import closecall, closecall_apart, counted, python, rows
+from conftest import NETS, closecall, closecall_apart, counted, python, rows
 from report_page import ALL, PALETTE, Opened, made_up, severe
 
 Copy = Callable[[str], Path]
@@ -29,9 +29,8 @@ def test_a_report_draws_without_errors_or_network_requests(browser: Any, town: P
     assert len(opened.page.query_selector_all("#distributions .chart")) == 6
     artefacts = Counter(row["artefact"] for row in rows(town / "log" / "conflicts.csv") if row["artefact"])
     why = ", ".join(f"{count} {artefact}" for artefact, count in sorted(artefacts.items()))
-    assert f"set aside {artefacts.total()} that are not traffic's: {why} (--artefacts counts them in)" in opened.text(
-        "#notes"
-    )
+    aside = f"set aside {artefacts.total()} that are not traffic's: {why} (--artefacts shows them)"
+    assert aside in opened.text("#notes")
     card = opened.page.locator("#worst li").first
     assert card.locator("output").inner_text() == "worst step"
     assert f"closecall show {town / 'log'} " in str(card.text_content())
@@ -166,8 +165,11 @@ def test_runs_that_differ_in_an_option_are_variants(browser: Any, scenario: Copy
     assert closecall("report", tmp_path / "runs", "-o", tmp_path / "r.html").returncode == 0
     opened = Opened(browser, tmp_path / "r.html")
     assert "The runs differ in epsilon" in opened.text("#notes")
-    figures = opened.text("#figures").lower()
-    assert [f"conflicts per vehicle-km, epsilon={epsilon}" in figures for epsilon in ("0.25", "0.5")] == [True, True]
+    head, *lines = (line.split("\t") for line in opened.text("#planlist").split("\n"))
+    assert head == ["Plan", "epsilon=0.25", "epsilon=0.5"]
+    assert [line[1:] for line in lines if line[0] == "runs"] == [["2", "2"]]
+    assert any(line[0] == "conflicts per vehicle-km" and all(map(float, line[1:])) for line in lines)
+    assert opened.page.is_hidden("#figures"), "nothing is added up"
     opened.page.select_option("#variant", label="epsilon=0.25")
     assert opened.text("#shown") == "2 of 4 conflicts"
     assert opened.complaints == []
@@ -368,8 +370,102 @@ def test_a_printed_page_is_white_and_has_no_controls(browser: Any, town: Path) -
         and opened.page.is_hidden(".controls")
         and opened.page.is_visible("#printed")
     )
+    # Swatches and bars are printed even if the printer leaves backgrounds out.
+    adjusted = "(selector) => getComputedStyle(document.querySelector(selector)).printColorAdjust"
+    for selector in ("#legend .key i", ".share span", "#figures div", "#verdict li > b"):
+        assert opened.page.evaluate(adjusted, selector) == "exact", selector
     opened.page.emulate_media(media="screen")
     opened.page.evaluate("dispatchEvent(new Event('afterprint'))")
     assert opened.page.evaluate("colours.critical") == dark
     assert opened.page.pdf(format="A4").startswith(b"%PDF")
     assert opened.complaints == []
+
+
+def test_an_address_opens_its_conflict(browser: Any, town: Path) -> None:
+    found = counted(town / "log")
+    caution = next(row for row in found if row["severity"] == "caution")
+    for row in (next(row for row in found if row["severity"] != "caution"), caution):
+        opened = Opened(browser, town / "report.html", view=f"conflict={row['id']}")
+        card = opened.text("#opened")
+        assert f"no. {row['id']}" in card and row["ego"] in card and row["foe"] in card
+        assert opened.page.locator("#opened canvas").count() == 1, "its clip or its drawing"
+        assert opened.page.url.endswith(f"#conflict={row['id']}")
+        opened.page.locator("#opened").press("Escape")
+        assert opened.page.is_hidden("#opened") and "conflict=" not in opened.page.url
+        assert opened.complaints == []
+    opened = Opened(browser, town / "report.html", view="conflict=99999")
+    assert opened.text("#opened") == "The conflict 99999 is not on this page."
+    opened.page.locator("#worst h3 a").first.click()
+    worst = opened.page.evaluate("worstRows(shownRows(), 1)[0]")
+    assert opened.page.evaluate("opened.row") == worst
+    assert opened.page.locator("#opened .player").count() == 1
+
+
+def test_tables_fit_a_screen_of_1400_pixels(browser: Any, named_town: Path) -> None:
+    opened = Opened(browser, named_town / "report.html", view=ALL)
+    opened.page.set_viewport_size({"width": 1400, "height": 900})
+    wide = opened.page.evaluate(
+        "[...document.querySelectorAll('.scroll')]"
+        ".filter((part) => part.clientWidth && part.scrollWidth > part.clientWidth).map((part) => part.ariaLabel)"
+    )
+    assert wide == []
+
+
+def test_places_have_the_names_of_their_streets(browser: Any, named_town: Path) -> None:
+    opened = Opened(browser, named_town / "report.html")
+    name = opened.page.locator("#verdict strong").first.inner_text()
+    assert re.fullmatch(r"Street of .* \((junction|edge) \S+\)", name)
+    assert "Street" in opened.text("#spots") and "Street" in opened.text("#worst")
+    opened.page.locator("#spots td:nth-child(2) button").first.click()
+    assert "Street" in opened.text("#there") and re.search("where=(junction|edge):", opened.page.url)
+    assert opened.complaints == []
+
+
+@pytest.fixture(scope="module")
+def named_town(town: Path, once: Any) -> Path:
+    """The town's report with long names of streets in its net."""
+
+    def fill(folder: Path) -> None:
+        net = (NETS / "town" / "town.net.xml").read_text()
+        names = iter(f"Street of the {number}th of November" for number in range(10_000))
+        named = re.sub(r'<edge (?=id="[^:])', lambda _: f'<edge name="{next(names)}" ', net)
+        (folder / "town.net.xml").write_text(named)
+        words = ("--net", folder / "town.net.xml", "-o", folder / "report.html")
+        assert closecall("report", town / "log", *words).returncode == 0
+
+    return once("named_town", fill)
+
+
+def test_a_summary_is_one_page_without_greek_letters(browser: Any, town: Path, tmp_path: Path) -> None:
+    assert closecall("report", town / "log", "--summary", "-o", tmp_path / "s.html").returncode == 0
+    opened = Opened(browser, tmp_path / "s.html")
+    text = opened.text("body")
+    assert not re.search("[\u0370-\u03ff]", text)
+    report = Opened(browser, town / "report.html")
+    assert opened.text("#verdict") == report.text("#verdict"), "the same sentences"
+    assert opened.colours("figure") > 5
+    assert len(re.findall(rb"/Type\s*/Page\b", opened.page.pdf(format="A4"))) == 1
+    assert (opened.complaints, opened.requests) == ([], [(tmp_path / "s.html").as_uri()])
+    assert (tmp_path / "s.html").stat().st_size < 1_000_000
+
+
+def test_a_background_map_is_asked_for_only_if_wanted(browser: Any, town: Path, tmp_path: Path) -> None:
+    net = (NETS / "town" / "town.net.xml").read_text()
+    offset = 'netOffset="-391000,-5819000" convBoundary="0,0,1000,1000" origBoundary="13,52,14,53"'
+    utm = f'{offset} projParameter="+proj=utm +zone=33"'
+    (tmp_path / "town.net.xml").write_text(re.sub("<location [^>]*/>", f"<location {utm}/>", net))
+    url = "http://127.0.0.1:9/{z}/{x}/{y}.png"
+    words = ("--net", tmp_path / "town.net.xml", "-o", tmp_path / "r.html")
+    assert closecall("report", town / "log", *words, "--tiles", url).returncode == 0
+    opened = Opened(browser, tmp_path / "r.html")
+    asked = [request for request in opened.requests if request.startswith("http://127.0.0.1:9/")]
+    zoom, column, line = map(int, re.fullmatch(r".*:9/(\d+)/(\d+)/(\d+)\.png", asked[0]).groups())  # type: ignore[union-attr]
+    # Berlin.
+    assert (column >> (zoom - 8), line >> (zoom - 8)) == (137, 83)
+    assert "map: 127.0.0.1:9" in opened.text("#legend")
+    assert closecall("report", town / "log", *words).returncode == 0
+    assert len(Opened(browser, tmp_path / "r.html").requests) == 1
+    refused = closecall("report", town / "log", "-o", tmp_path / "r.html", "--tiles", url)
+    assert (refused.returncode, "no geographic projection" in refused.stderr) == (2, True)
+    refused = closecall("report", town / "log", "-o", tmp_path / "r.html", "--tiles", "tiles")
+    assert refused.returncode == 2 and "{z}, {x}, {y}" in refused.stderr

@@ -84,7 +84,7 @@ def test_a_report_leaves_it_out_and_says_why(browser: Any, log: Path, tmp_path: 
     assert done.stdout.startswith("3 conflicts of 1 run") and done.stdout.endswith(f"\n{WHY} {COUNTS}\n")
     opened = Opened(browser, page, view=ALL)
     assert opened.text("#shown") == "3 of 3 conflicts"
-    assert f"{WHY} {COUNTS}." in opened.text("#notes")
+    assert f"{WHY} (--artefacts shows them)." in opened.text("#notes")
     cards = opened.text("#worst")
     assert "A crash was near certain, and would have been moderate." in cards and "Not traffic" not in cards
     done = closecall("report", log, "-o", page, "--artefacts")

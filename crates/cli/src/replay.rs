@@ -84,14 +84,10 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     run.set_fixed_routes(true);
     run.set_sublane(arguments.sublane);
     run.drop_closed_conflicts();
+    let of_recording = opened.remarks();
     if !arguments.check.quiet {
-        let remarks = run.opening_remarks(Some(replay.step_length()));
-        opened
-            .missing()
-            .iter()
-            .chain(opened.doubtful())
-            .chain(&remarks)
-            .for_each(|remark| eprintln!("closecall: {remark}"));
+        let of_run = run.opening_remarks(Some(replay.step_length()));
+        of_recording.iter().chain(&of_run).for_each(|remark| eprintln!("closecall: {remark}"));
     }
     run.set_tracked(opened.is_tracked());
     run.set_averaged_over(if opened.has_speeds_of_moments() { 0.0 } else { replay.averaged_over() });
@@ -103,7 +99,7 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     let outcome = check(&mut replay, &mut recorded.run, interrupted, arguments.check.quiet);
     let closed = recorded.close(Ending {
         error: outcome.as_ref().err().map(ToString::to_string),
-        remarks: replay.remarks(),
+        remarks: [of_recording, replay.remarks()].concat(),
         ..Ending::default()
     });
     if matches!(outcome, Ok(()) | Err(Error::Run(RunError::CutShort { .. }))) {

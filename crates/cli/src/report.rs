@@ -10,7 +10,7 @@ use super::progress::CountBar;
 use closecall::util::units::counted;
 use closecall_analysis::filter::ConflictFilter;
 use closecall_analysis::logged::check_none_lost;
-use closecall_analysis::report;
+use closecall_analysis::report::{self, TileUrl};
 
 /// Which logs to show, and where to write the page.
 #[derive(Args)]
@@ -18,9 +18,9 @@ pub(crate) struct ReportArgs {
     /// Log folders, or folders that contain log folders.
     #[arg(value_name = "LOG", required = true)]
     folders: Vec<PathBuf>,
-    /// HTML file to write.
-    #[arg(short, long, value_name = "FILE", default_value = "report.html")]
-    out: PathBuf,
+    /// HTML file to write [default: report.html, or summary.html with --summary].
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
     /// Net for the map [default: the net file named in the first log].
     #[arg(short, long, value_name = "NET")]
     net: Option<PathBuf>,
@@ -30,6 +30,12 @@ pub(crate) struct ReportArgs {
     /// Runs to compare with, such as those before a change: log folders, or folders that contain log folders.
     #[arg(long, value_name = "LOG", num_args = 1..)]
     against: Vec<PathBuf>,
+    /// Write one page for people who decide, to print or save as PDF from a browser: where, why, and what to know.
+    #[arg(long)]
+    summary: bool,
+    /// Background map: the page requests its tiles from this server. Without it a page sends no requests.
+    #[arg(long, value_name = "URL", conflicts_with = "summary")]
+    tiles: Option<TileUrl>,
     #[command(flatten)]
     filter: ConflictFilter,
 }
@@ -37,16 +43,18 @@ pub(crate) struct ReportArgs {
 /// Writes the page and prints its size.
 pub fn run(arguments: &ReportArgs) -> Result<()> {
     let mut bar = CountBar::new("conflicts", !arguments.quiet);
-    let ReportArgs { folders, against, net, filter, .. } = arguments;
-    let request = report::Request { folders, against, net: net.as_deref(), filter };
+    let ReportArgs { folders, against, net, filter, summary, tiles, .. } = arguments;
+    let out = arguments.out.clone().unwrap_or_else(|| if *summary { "summary.html" } else { "report.html" }.into());
+    let request =
+        report::Request { folders, against, net: net.as_deref(), filter, is_summary: *summary, tiles: tiles.as_ref() };
     let mut progress = |read, all| bar.show(read, all);
-    let made = report::write(&request, &arguments.out, &mut progress)?;
+    let made = report::write(&request, &out, &mut progress)?;
     drop(bar);
     let report::Made { runs, conflicts, set_aside, bytes, lost } = made;
     if !arguments.quiet {
         let size = bytes as f64 / 1e6;
         let (conflicts, runs) = (counted(conflicts, "conflict"), counted(runs as u64, "run"));
-        print(format_args!("{conflicts} of {runs} in {} ({size:.1} MB)\n", arguments.out.display()))?;
+        print(format_args!("{conflicts} of {runs} in {} ({size:.1} MB)\n", out.display()))?;
         set_aside.map_or(Ok(()), |text| print(format_args!("{text}\n")))?;
     }
     Ok(check_none_lost(&lost)?)

@@ -10,7 +10,8 @@ use super::elements::{EdgeFunction, Lane, LaneIndex};
 use super::finder::aabb;
 use super::network::Net;
 use super::overlaps::{Overlap, VEHICLE_WIDTH};
-use crate::geometry::{Bounds, Point, cross};
+use crate::geometry::outline::{is_inside, sides};
+use crate::geometry::{Bounds, Point};
 use crate::util::units::Metre;
 
 /// How far beside a walking area a person on it may be, in m: SUMO's ways over it leave its outline. Of 148 persons on one in
@@ -72,25 +73,9 @@ fn reach(area: &[Point], lane: &Lane) -> Metre {
     half - of_lane.chain(of_area).fold(f64::INFINITY, f64::min)
 }
 
-/// The sides of an area, of which the last one closes it.
-fn sides(area: &[Point]) -> impl Iterator<Item = [Point; 2]> {
-    let closing = area.last().zip(area.first()).map(|(last, first)| [*last, *first]);
-    area.windows(2).map(|side| [side[0], side[1]]).chain(closing)
-}
-
 /// The distance of a place from a piece of a line.
 fn distance([from, to]: [Point; 2], place: Point) -> Metre {
     let along = to - from;
     let part = (place - from).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);
     (place - (from + along * part.clamp(0.0, 1.0))).norm()
-}
-
-/// Whether an outline is around a place: a ray from there crosses it an odd number of times.
-fn is_inside(sides: impl Iterator<Item = [Point; 2]>, place: Point) -> bool {
-    let crossed = sides.filter(|[from, to]| {
-        let is_above = |point: &Point| point.y > place.y;
-        let is_left = cross(&(to - from), &(place - from)) > 0.0;
-        is_above(from) != is_above(to) && is_left == is_above(to)
-    });
-    crossed.count() % 2 == 1
 }

@@ -1,5 +1,6 @@
 //! The parts of a road network: edges, lanes, links between lanes, junctions.
 
+use ecow::EcoString;
 use nalgebra::Point2;
 use smallvec::SmallVec;
 
@@ -44,6 +45,8 @@ pub enum EdgeFunction {
 pub struct Edge {
     /// SUMO's id.
     pub id: String,
+    /// The name of its street; empty where the net has none.
+    pub street: EcoString,
     /// Its purpose.
     pub function: EdgeFunction,
     /// Its lanes, from right to left.

@@ -4,6 +4,7 @@ use super::corners::cut_corners;
 use super::elements::{EdgeFunction, LaneIndex};
 use super::network::Net;
 use super::overlaps::{Overlap, Overlaps, ROUNDING};
+use crate::util::remark::{Remark, RemarkCode};
 use crate::util::units::Metre;
 
 /// The largest difference of a lane's length from its shape's that goes without saying, as a part of the longer.
@@ -16,8 +17,13 @@ const NAMED: usize = 3;
 impl Net {
     /// Where it is not drawn as it is driven: a line for each way in which it is not. Road users that overlap by up to the
     /// tolerance do not collide.
-    pub fn remarks(&self, overlaps: &Overlaps, tolerance: Metre) -> Vec<String> {
-        lengths(self).into_iter().chain(overlapping(self, overlaps)).chain(corners(self, tolerance)).collect()
+    pub fn remarks(&self, overlaps: &Overlaps, tolerance: Metre) -> Vec<Remark> {
+        let found = [
+            (RemarkCode::LaneLengths, lengths(self)),
+            (RemarkCode::LanesOverlap, overlapping(self, overlaps)),
+            (RemarkCode::CornersCut, corners(self, tolerance)),
+        ];
+        found.into_iter().filter_map(|(code, text)| Some(Remark::new(code, text?))).collect()
     }
 }
 

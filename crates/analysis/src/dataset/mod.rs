@@ -6,7 +6,9 @@ pub(crate) mod nets;
 
 use std::path::{Path, PathBuf};
 
-use super::filter::{ConflictFilter, set_aside_in_words};
+use serde::Serialize;
+
+use super::filter::{ConflictFilter, NamedPlaces, set_aside_in_words};
 use super::logged::{ConflictReader, LostRows, Progress, Reading, log_folders};
 use super::variants::{Variant, Variants};
 use crate::Result;
@@ -15,7 +17,7 @@ use closecall::geometry::Point;
 use closecall::traffic::net::Net;
 use closecall::util::units::Second;
 use closecall_run::output::schema::LoggedConflict;
-use closecall_run::output::summary::SetAside;
+use closecall_run::output::summary::{SetAside, in_words};
 use kept::{KeptConflicts, RunConflict};
 use nets::Ground;
 
@@ -38,8 +40,23 @@ pub struct Conflicts {
     pub(super) set_aside: Option<String>,
     /// The filter that they passed, as the words of a command line; none for all.
     pub(super) filter: Option<String>,
+    /// Which part of the traffic they are of.
+    pub(super) scope: Scope,
+    /// The places with names of their own.
+    pub(super) named: Option<NamedPlaces>,
     /// The logs that lack rows.
     pub(super) lost: Vec<LostRows>,
+}
+
+/// Whether the filter selects a part of the net or of the time: the traffic of that part alone is not known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub(crate) struct Scope {
+    /// It names places.
+    pub place: bool,
+    /// It names a period.
+    pub period: bool,
+    /// It counts those that are none of traffic's, too.
+    pub artefacts: bool,
 }
 
 /// Reads the logs in `folders`, each a log itself or a folder of logs. The net is read from `net`, or from the path in the
@@ -104,7 +121,7 @@ pub fn read(
     ground.notes.append(&mut variants.notes);
     ground.notes.extend(lost.iter().map(ToString::to_string));
     let aside = set_aside_in_words(&set_aside);
-    ground.notes.extend(aside.as_ref().map(|words| format!("The runs have {words}.")));
+    ground.notes.extend(in_words(&set_aside).map(|words| format!("The runs have {words} (--artefacts shows them).")));
     let seen = worst.seen();
     if !filter.is_empty() {
         let passed = if seen == 0 { "none".to_owned() } else { seen.to_string() };
@@ -115,9 +132,12 @@ pub fn read(
         let summaries = records.iter_mut().filter_map(|record| record.get_mut("summary")?.as_object_mut());
         summaries.for_each(|summary| drop(summary.remove("entered")));
     }
+    let scope = Scope { place: !filter.places.is_empty(), period: filter.has_period(), artefacts: filter.artefacts };
+    let named = filter.named.clone();
     let filter = (!filter.is_empty()).then(|| filter.to_string());
     let conflicts = worst.into_sorted();
-    Ok(Conflicts { logs, records, variants: variants.all, ground, conflicts, seen, set_aside: aside, filter, lost })
+    let variants = variants.all;
+    Ok(Conflicts { logs, records, variants, ground, conflicts, seen, set_aside: aside, filter, scope, named, lost })
 }
 
 impl Conflicts {

@@ -1,5 +1,6 @@
 //! Which conflicts count: the same filter in statistics, pictures and the report.
 
+mod named_places;
 mod place;
 
 use std::fmt;
@@ -11,6 +12,7 @@ use closecall::events::{Cause, Manoeuvre};
 use closecall::util::units::Second;
 use closecall_run::output::summary::{Exposure, SetAside, in_words};
 
+pub use named_places::{NamedPlace, NamedPlaces};
 pub use place::Place;
 
 /// Which conflicts count: those that match every part. An empty part matches all.
@@ -38,10 +40,13 @@ pub struct ConflictFilter {
     /// Only until this time, in s.
     #[arg(long, value_name = "S", value_parser = time)]
     pub to: Option<Second>,
-    /// Only here: x,y,radius in m, or the id of a junction, edge or lane; junction:ID, edge:ID and lane:ID name the part too.
-    /// May be given several times.
+    /// Only here: x,y,radius in m, the id of a junction, edge or lane, or a name of --places; junction:ID, edge:ID and lane:ID
+    /// name the part too. May be given several times.
     #[arg(long = "where", value_name = "PLACE")]
     pub places: Vec<Place>,
+    /// TOML file of places with names of their own: areas, and groups of edges and junctions (docs/report.md).
+    #[arg(long = "places", value_name = "FILE")]
+    pub named: Option<NamedPlaces>,
     /// Also artefacts, made by SUMO or a tracker, not traffic.
     #[arg(long)]
     pub artefacts: bool,
@@ -73,9 +78,15 @@ impl ConflictFilter {
         }
     }
 
+    /// Whether a place has a name of its own, and the conflict is there.
+    fn is_at(&self, place: &Place, conflict: &LoggedConflict) -> bool {
+        let Place::Named { part: None, id } = place else { return false };
+        self.named.as_ref().and_then(|named| named.named(id)).is_some_and(|named| named.holds(conflict))
+    }
+
     /// Whether every conflict counts.
     pub fn is_empty(&self) -> bool {
-        *self == Self::default()
+        *self == Self { named: self.named.clone(), ..Self::default() }
     }
 
     /// Whether a conflict is traffic's, or others count, too: no other is among those that the rest of the filter sees.
@@ -104,7 +115,7 @@ impl ConflictFilter {
             && any(&self.manoeuvres, |manoeuvre| manoeuvre.name() == conflict.manoeuvre)
             && any(&self.causes, |cause| conflict.cause.split(' ').any(|known| known == cause.name()))
             && any(&self.types, |wanted| types.iter().any(|known| is_of(known, wanted)))
-            && any(&self.places, |place| place.holds(conflict))
+            && any(&self.places, |place| place.holds(conflict) || self.is_at(place, conflict))
     }
 
     /// The columns that it needs.
@@ -118,7 +129,8 @@ impl ConflictFilter {
             (!self.causes.is_empty(), &["cause"]),
             (!self.types.is_empty(), &["ego_type", "foe_type"]),
         ];
-        let places = self.places.iter().flat_map(Place::columns);
+        let of_named: &[&str] = if self.named.is_some() { &["lane", "x", "y"] } else { &[] };
+        let places = self.places.iter().flat_map(Place::columns).chain(of_named);
         parts
             .into_iter()
             .filter(|(is_used, _)| *is_used)
@@ -162,8 +174,10 @@ impl fmt::Display for ConflictFilter {
         let times = [("from", self.from), ("to", self.to)];
         let times = times.into_iter().filter_map(|(name, time)| Some(format!("--{name} {}", time?)));
         let places = self.places.iter().map(|place| format!("--where {place}"));
+        let named = self.named.iter().filter(|_| !self.places.is_empty());
+        let named = named.map(|named| format!("--places {}", named.path().display()));
         let artefacts = self.artefacts.then(|| "--artefacts".to_owned());
-        f.write_str(&lists.chain(times).chain(places).chain(artefacts).collect::<Vec<_>>().join(" "))
+        f.write_str(&lists.chain(times).chain(places).chain(named).chain(artefacts).collect::<Vec<_>>().join(" "))
     }
 }
 

@@ -7,6 +7,7 @@ use rustc_hash::FxHashMap;
 use serde_json::{Value, json};
 
 use crate::dataset::kept::RunConflict;
+use crate::dataset::nets::Ground;
 use crate::playback::{clips, signal_bar, signal_colour};
 use crate::{Error, Result};
 use closecall::detection::kind::Severity;
@@ -16,25 +17,23 @@ use closecall::traffic::net::Net;
 use closecall::util::units::Metre;
 use closecall_run::output::schema::LoggedConflict;
 
-/// This many of the worst conflicts are played.
-const PLAYED: usize = 20;
 /// Others are left out that never come this near to the conflict, in m: the page shows no more.
 const SHOWN: Metre = 50.0;
 /// Of a metre, a second and a metre per second.
 const HUNDREDTHS: f64 = 100.0;
 const THOUSANDTHS: f64 = 1000.0;
 
-/// The clips of the worst conflicts that have one, by run and `id`. Clips that are not as a run writes them are a note: the
-/// report is whole without them.
+/// The clips of these conflicts that have one as JSON, by run and `id`, until they take this many bytes: those of the first
+/// ones. Clips that are not as a run writes them are a note: the report is whole without them.
 ///
 /// # Errors
 /// [`Error::file`] where a file cannot be read.
 pub(crate) fn of_worst(
-    worst_first: &[RunConflict],
+    worst: &[RunConflict],
     logs: &[PathBuf],
-    notes: &mut Vec<String>,
-) -> Result<FxHashMap<(u32, u64), Clip>> {
-    let worst = &worst_first[..worst_first.len().min(PLAYED)];
+    most_bytes: usize,
+    ground: &mut Ground,
+) -> Result<FxHashMap<(u32, u64), Value>> {
     let mut all = FxHashMap::default();
     for (run, log) in (0..).zip(logs) {
         let ids = worst.iter().filter(|one| one.run == run).map(|one| one.conflict.id).collect::<Vec<_>>();
@@ -44,14 +43,23 @@ pub(crate) fn of_worst(
         match clips(log, &ids) {
             Ok(found) => all.extend(found.into_iter().map(|(id, clip)| ((run, id), clip))),
             Err(error @ Error::Run(closecall_run::Error::File { .. })) => return Err(error),
-            Err(error) => notes.push(format!("No playback: {error}.")),
+            Err(error) => ground.notes.push(format!("No playback: {error}.")),
         }
     }
-    Ok(all)
+    let mut bytes = 0;
+    let of = |one: &RunConflict| {
+        let key = (one.run, one.conflict.id);
+        Some((key, json(all.get(&key)?, &one.conflict, ground.net.as_ref())))
+    };
+    let fits = |(_, clip): &((u32, u64), Value)| {
+        bytes += clip.to_string().len();
+        bytes <= most_bytes
+    };
+    Ok(worst.iter().filter_map(of).take_while(fits).collect())
 }
 
 /// A clip as JSON. Times are in ms, places in cm, headings and times left in hundredths, speeds in cm/s.
-pub fn json(clip: &Clip, conflict: &LoggedConflict, net: Option<&Net>) -> Value {
+fn json(clip: &Clip, conflict: &LoggedConflict, net: Option<&Net>) -> Value {
     let at = Point::new(conflict.x, conflict.y);
     let is_near = |user: &ClipUser| {
         let places = user.x.iter().zip(&user.y).filter_map(|(x, y)| x.zip(*y));

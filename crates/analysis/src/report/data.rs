@@ -7,10 +7,13 @@ use serde_json::{Map, Value, json};
 
 use super::contact::parts;
 use super::movements::Movements;
-use super::{clips, faults, page_net};
+use super::streets::Streets;
+use super::tiles::TileUrl;
+use super::{clips, faults, page_net, reading, remarks};
 use crate::Result;
 use crate::dataset::Conflicts;
 use crate::dataset::kept::RunConflict;
+use crate::filter::NamedPlaces;
 use crate::statistics::Effects;
 use closecall::detection::kind::{Kind, Severity};
 use closecall::events::Cause;
@@ -18,8 +21,23 @@ use closecall::options::Options;
 use closecall::traffic::net::{EdgeFunction, Net};
 use closecall_run::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value as Cell};
 
-/// The worst conflicts, this many, can be drawn with both rectangles and paths.
-const DRAWN: usize = 2_000;
+/// For how many of the worst conflicts a page has more than a row of values.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Details {
+    /// Conflicts with both rectangles and paths.
+    drawn: usize,
+    /// Conflicts with clips, as long as these take no more than `clip_bytes`.
+    played: usize,
+    clip_bytes: usize,
+}
+
+impl Details {
+    /// Those of the report.
+    pub const REPORT: Self = Self { drawn: 2_000, played: 100, clip_bytes: 2_000_000 };
+    /// Those of the summary: the worst one's clip, which says when the two touched.
+    pub const SUMMARY: Self = Self { drawn: 0, played: 1, clip_bytes: 2_000_000 };
+}
+
 /// The number column that nothing on the page shows.
 const NOT_SHOWN: &str = "clearance";
 
@@ -28,17 +46,23 @@ const NOT_SHOWN: &str = "clearance";
 ///
 /// # Errors
 /// Those of reading the clips.
-pub fn json(found: Conflicts, before: Option<Value>) -> Result<String> {
-    let Conflicts { logs, records, variants, mut ground, mut conflicts, seen, set_aside, filter, .. } = found;
-    let clips = clips::of_worst(&conflicts, &logs, &mut ground.notes)?;
+pub(super) fn json(
+    found: Conflicts,
+    before: Option<Value>,
+    details: Details,
+    tiles: Option<&TileUrl>,
+) -> Result<String> {
+    let Conflicts { logs, records, variants, mut ground, mut conflicts, seen, set_aside, filter, scope, named, .. } =
+        found;
+    let worst = &conflicts[..conflicts.len().min(details.played)];
+    let mut played = clips::of_worst(worst, &logs, details.clip_bytes, &mut ground)?;
     let key = |one: &RunConflict| (one.run, one.conflict.id);
-    let drawn = conflicts.iter().take(DRAWN).map(key).collect::<FxHashSet<_>>();
+    let drawn = conflicts.iter().take(details.drawn).map(key).collect::<FxHashSet<_>>();
     conflicts.sort_unstable_by_key(key);
     let drawn = (0..).zip(&conflicts).filter(|(_, one)| drawn.contains(&key(one))).filter_map(drawing);
     let drawn = drawn.collect::<Vec<_>>();
     let net = ground.net.as_ref();
-    let clip =
-        |(row, one): (usize, &RunConflict)| Some(json!([row, clips::json(clips.get(&key(one))?, &one.conflict, net)]));
+    let clip = |(row, one): (usize, &RunConflict)| Some(json!([row, played.remove(&key(one))?]));
     let played = (0..).zip(&conflicts).filter_map(clip).collect::<Vec<_>>();
     let data = json!({
         "version": env!("CARGO_PKG_VERSION"),
@@ -46,6 +70,11 @@ pub fn json(found: Conflicts, before: Option<Value>) -> Result<String> {
         "kinds": Kind::ALL.map(Kind::name),
         "severities": Severity::ALL.map(Severity::name),
         "clips": played,
+        "reading": reading::json(&records),
+        "remarks": remarks::json(&records),
+        "scope": scope,
+        "places": named.as_ref().map(|named| &*named.all),
+        "tiles": tiles.map(|tiles| tiles.json(net)).transpose()?,
         "runs": runs(&logs, records),
         "variants": variants.iter().map(|variant| json!({ "name": variant.name, "runs": variant.runs })).collect::<Vec<_>>(),
         "defaults": Options::default(),
@@ -57,7 +86,7 @@ pub fn json(found: Conflicts, before: Option<Value>) -> Result<String> {
         "set_aside": set_aside,
     });
     let mut text = "{\"conflicts\":".to_owned();
-    columns(&mut text, &conflicts, drawn, net);
+    columns(&mut text, &conflicts, drawn, net, named.as_ref());
     drop(conflicts);
     text.push(',');
     push(&mut text, &data.to_string()[1..]);
@@ -75,7 +104,9 @@ fn push(text: &mut String, json: &str) {
 /// The runs that the report compares with: how the rates differ, and where their conflicts are.
 pub fn before(effects: &Effects, found: &Conflicts) -> Value {
     let conflicts = || found.conflicts.iter().map(|one| &one.conflict);
-    let probability = |conflict: &LoggedConflict| rounded(conflict.crash_probability.unwrap_or_default(), 5);
+    // An artefact is not a danger, on either side.
+    let of_traffic = |conflict: &LoggedConflict| conflict.crash_probability.filter(|_| conflict.artefact.is_empty());
+    let probability = |conflict: &LoggedConflict| rounded(of_traffic(conflict).unwrap_or_default(), 5);
     json!({
         "effects": effects,
         "x": conflicts().map(|conflict| rounded(conflict.x, 1)).collect::<Vec<_>>(),
@@ -112,7 +143,7 @@ impl<'a> Words<'a> {
 }
 
 /// Appends the conflicts, a column after the other, and the lists of the words that repeat.
-fn columns(text: &mut String, rows: &[RunConflict], drawn: Vec<Value>, net: Option<&Net>) {
+fn columns(text: &mut String, rows: &[RunConflict], drawn: Vec<Value>, net: Option<&Net>, named: Option<&NamedPlaces>) {
     text.push_str("{\"columns\":{");
     let mut is_first = true;
     let mut add = |name: &str, column: Value| {
@@ -133,7 +164,9 @@ fn columns(text: &mut String, rows: &[RunConflict], drawn: Vec<Value>, net: Opti
     let [mut manoeuvres, mut causes] = <[Words; 2]>::default();
     add("manoeuvre", conflicts().map(|conflict| manoeuvres.place(&conflict.manoeuvre)).collect());
     add("cause", conflicts().map(|conflict| causes.place(&conflict.cause)).collect());
-    let mut lanes = Words::default();
+    let [mut lanes, mut areas] = <[Words; 2]>::default();
+    let area = |conflict| named.and_then(|named| named.of(conflict)).map_or("", |place| &place.name);
+    add("area", conflicts().map(|conflict| areas.place(area(conflict))).collect());
     add("lane", conflicts().map(|conflict| lanes.place(&conflict.lane)).collect());
     add("id", conflicts().map(|conflict| conflict.id).collect());
     add("run", rows.iter().map(|row| row.run).collect());
@@ -167,6 +200,7 @@ fn columns(text: &mut String, rows: &[RunConflict], drawn: Vec<Value>, net: Opti
     let mut places = Words::default();
     let spots = lanes.list.iter().map(|lane| spot(lane, net)).collect::<Vec<_>>();
     let spot_of_lane = spots.iter().map(|spot| places.place(spot)).collect::<Vec<_>>();
+    let streets = net.map(Streets::of).unwrap_or_default();
     let lists = json!({
         "count": rows.len(),
         "ids": ids.list,
@@ -176,8 +210,10 @@ fn columns(text: &mut String, rows: &[RunConflict], drawn: Vec<Value>, net: Opti
         "artefacts": artefacts.list,
         "manoeuvres": manoeuvres.list,
         "causes": causes.list,
+        "areas": areas.list,
         "lanes": lanes.list,
         "spots": places.list,
+        "streets": places.list.iter().map(|spot| streets.name(spot)).collect::<Vec<_>>(),
         "spot_of_lane": spot_of_lane,
         "drawn": drawn,
         "movements": movements.json(),
@@ -274,7 +310,11 @@ mod tests {
                 seen: 1,
                 set_aside: None,
                 filter: None,
+                scope: Default::default(),
+                named: None,
             },
+            None,
+            Details::REPORT,
             None,
         )
         .unwrap();

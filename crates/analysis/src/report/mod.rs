@@ -1,7 +1,8 @@
 //! `closecall report`: turns logs into one HTML page that needs nothing but a browser.
 //!
 //! The page is a template (`page.html`) with its style, the chart library, the data as JSON columns, and the scripts
-//! that draw them. All of them are in one file, which works offline and sends nothing anywhere.
+//! that draw them. All of them are in one file, which works offline and sends nothing anywhere. `--summary` writes another
+//! template (`summary.html`) with the scripts that it needs.
 
 mod clips;
 mod contact;
@@ -9,6 +10,10 @@ mod data;
 mod faults;
 mod movements;
 mod page_net;
+mod reading;
+mod remarks;
+mod streets;
+mod tiles;
 
 use std::path::{Path, PathBuf};
 
@@ -19,36 +24,79 @@ use super::statistics::Effects;
 use super::style;
 use crate::Result;
 use closecall_run::util::output_file::OutputFile;
+use data::Details;
 
-/// The template, with a mark for each part.
-const PAGE: &str = include_str!("page.html");
-/// The parts of the page with their marks, in the order of the page.
+pub use tiles::TileUrl;
+
+/// The marks of a template, each replaced by its part, in the order of the page.
+const TILES: &str = "{{tiles}}";
 const STYLE: &str = "{{style}}";
 const DATA: &str = "{{data}}";
-const LIBRARY: (&str, &str) = ("{{library}}", include_str!("vendor/echarts.min.js"));
+const LIBRARY: &str = "{{library}}";
 const SCRIPTS: &str = "{{scripts}}";
-/// The page's own scripts, each after those that it needs.
-const OWN_SCRIPTS: [&str; 19] = [
-    include_str!("script/data.js"),
-    include_str!("script/filter.js"),
-    include_str!("script/colours.js"),
-    include_str!("script/roads.js"),
-    include_str!("script/words.js"),
-    include_str!("script/density.js"),
-    include_str!("script/signs.js"),
-    include_str!("script/map.js"),
-    include_str!("script/faults.js"),
-    include_str!("script/charts.js"),
-    include_str!("script/movements.js"),
-    include_str!("script/spots.js"),
-    include_str!("script/clip.js"),
-    include_str!("script/curves.js"),
-    include_str!("script/player.js"),
-    include_str!("script/tables.js"),
-    include_str!("script/against.js"),
-    include_str!("script/export.js"),
-    include_str!("script/page.js"),
-];
+
+/// A page: its template, and its own scripts, each after those that it needs.
+struct Page {
+    template: &'static str,
+    library: Option<&'static str>,
+    scripts: &'static [&'static str],
+}
+
+/// The report: map, charts, tables, playback.
+const REPORT: Page = Page {
+    template: include_str!("page.html"),
+    library: Some(include_str!("vendor/echarts.min.js")),
+    scripts: &[
+        include_str!("script/data.js"),
+        include_str!("script/filter.js"),
+        include_str!("script/scope.js"),
+        include_str!("script/colours.js"),
+        include_str!("script/roads.js"),
+        include_str!("script/road_series.js"),
+        include_str!("script/tiles.js"),
+        include_str!("script/words.js"),
+        include_str!("script/density.js"),
+        include_str!("script/signs.js"),
+        include_str!("script/map.js"),
+        include_str!("script/faults.js"),
+        include_str!("script/charts.js"),
+        include_str!("script/movements.js"),
+        include_str!("script/intervals.js"),
+        include_str!("script/spots.js"),
+        include_str!("script/verdict.js"),
+        include_str!("script/clip.js"),
+        include_str!("script/curves.js"),
+        include_str!("script/player.js"),
+        include_str!("script/tables.js"),
+        include_str!("script/opened.js"),
+        include_str!("script/against.js"),
+        include_str!("script/export.js"),
+        include_str!("script/header.js"),
+        include_str!("script/page.js"),
+    ],
+};
+
+/// One page to print, for people who decide. Its sentences are those of the report.
+const SUMMARY: Page = Page {
+    template: include_str!("summary.html"),
+    library: None,
+    scripts: &[
+        include_str!("script/data.js"),
+        include_str!("script/filter.js"),
+        include_str!("script/scope.js"),
+        include_str!("script/colours.js"),
+        include_str!("script/roads.js"),
+        include_str!("script/words.js"),
+        include_str!("script/movements.js"),
+        include_str!("script/intervals.js"),
+        include_str!("script/spots.js"),
+        include_str!("script/verdict.js"),
+        include_str!("script/clip.js"),
+        include_str!("script/tables.js"),
+        include_str!("script/header.js"),
+        include_str!("script/summary.js"),
+    ],
+};
 
 /// The size of a report.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -76,6 +124,10 @@ pub struct Request<'a> {
     pub net: Option<&'a Path>,
     /// Which conflicts count.
     pub filter: &'a ConflictFilter,
+    /// Whether to write one page for people who decide, instead of the report.
+    pub is_summary: bool,
+    /// The server of the background map; none for a page that sends no requests.
+    pub tiles: Option<&'a TileUrl>,
 }
 
 /// Writes a report to `out`.
@@ -83,7 +135,7 @@ pub struct Request<'a> {
 /// # Errors
 /// Those of reading the logs, of an output that is one of them, and of writing `out`.
 pub fn write(request: &Request, out: &Path, progress: &mut Progress) -> Result<Made> {
-    let Request { folders, against, net, filter } = *request;
+    let Request { folders, against, net, filter, is_summary, tiles } = *request;
     check_keeps_logs(out, &[folders, against].concat(), net)?;
     let conflicts = read(folders, net, filter, progress)?;
     let runs = conflicts.logs.len();
@@ -96,10 +148,11 @@ pub fn write(request: &Request, out: &Path, progress: &mut Progress) -> Result<M
         lost.extend(lost_before.into_iter().filter(|rows| !conflicts.lost.contains(rows)));
         Some(data::before(&effects, &read(against, net, filter, progress)?))
     };
-    let data = data::json(conflicts, before)?;
+    let (shown, details) = if is_summary { (SUMMARY, Details::SUMMARY) } else { (REPORT, Details::REPORT) };
+    let data = data::json(conflicts, before, details, tiles)?;
     let mut file = OutputFile::create(out)?;
     let mut bytes = 0;
-    page(&data, |part| {
+    page(&shown, tiles, &data, |part| {
         bytes += part.len();
         Ok(file.append(part.as_bytes())?)
     })?;
@@ -109,11 +162,16 @@ pub fn write(request: &Request, out: &Path, progress: &mut Progress) -> Result<M
 
 /// Writes the page, each mark replaced by its part. The parts themselves are not searched for marks, since an id may look like
 /// one.
-fn page(data: &str, mut write: impl FnMut(&str) -> Result<()>) -> Result<()> {
-    let scripts = OWN_SCRIPTS.concat();
+fn page(page: &Page, tiles: Option<&TileUrl>, data: &str, mut write: impl FnMut(&str) -> Result<()>) -> Result<()> {
+    let scripts = page.scripts.concat();
     let style = style::sheet();
-    let mut rest = PAGE;
-    for (mark, part) in [(STYLE, &*style), (DATA, data), LIBRARY, (SCRIPTS, &scripts)] {
+    let mut rest = page.template;
+    let library = page.library.map(|library| (LIBRARY, library));
+    // The policy of the page lets it ask this server only.
+    let tiles = tiles.map_or_else(String::new, |tiles| format!(" {}", tiles.origin()));
+    let tiles = page.template.contains(TILES).then_some((TILES, &*tiles));
+    let parts = tiles.into_iter().chain([(STYLE, &*style), (DATA, data)]).chain(library).chain([(SCRIPTS, &*scripts)]);
+    for (mark, part) in parts {
         let (before, after) = rest.split_once(mark).unwrap_or((rest, ""));
         write(before)?;
         write(part)?;
@@ -128,18 +186,21 @@ mod tests {
 
     #[test]
     fn every_part_has_one_mark_and_ends_no_script() {
-        for mark in [STYLE, DATA, LIBRARY.0, SCRIPTS] {
-            assert_eq!(PAGE.matches(mark).count(), 1, "{mark}");
-        }
-        for script in OWN_SCRIPTS.iter().chain([&LIBRARY.1]) {
-            assert!(!script.contains("</script"));
+        for page in [REPORT, SUMMARY] {
+            for mark in [STYLE, DATA, SCRIPTS] {
+                assert_eq!(page.template.matches(mark).count(), 1, "{mark}");
+            }
+            assert_eq!(page.template.matches(LIBRARY).count(), page.library.iter().count());
+            for script in page.scripts.iter().chain(&page.library) {
+                assert!(!script.contains("</script"));
+            }
         }
     }
 
     #[test]
     fn data_that_looks_like_a_mark_stays_data() {
         let mut text = String::new();
-        page("[\"{{scripts}}\"]", |part| {
+        page(&REPORT, None, "[\"{{scripts}}\"]", |part| {
             text += part;
             Ok(())
         })

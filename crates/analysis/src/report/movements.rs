@@ -110,6 +110,8 @@ impl<'a> Movements<'a> {
     /// For each junction its approaches, and all movements.
     pub fn json(&self) -> Value {
         let approach = |Approach { name, angle, role }: &Approach| {
+            let street = self.net.and_then(|net| Some(&net.edges[*net.edge_ids.get(name)?].street));
+            let name = street.map(|street| street.as_str()).filter(|street| !street.is_empty()).unwrap_or(name);
             json!([name, angle.map(|angle| (angle * 100.0).round() / 100.0), *role as u8])
         };
         let of_junction =

@@ -1,5 +1,6 @@
-//! How the rates of two sets of runs differ, row by row of a forest plot, and in the one sentence that a report needs: by
-//! severity, kind, manoeuvre and place.
+//! How the rates of two sets of runs differ, row by row of a forest plot, and in the one sentence that a report needs: all
+//! conflicts by severity and kind, the risk index, collisions, and by manoeuvre and place those that matter most of what there
+//! is. What neither set has is named too: an empty table would say nothing.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -10,10 +11,10 @@ use super::collect::Collection;
 use super::counts::{Counts, Spot};
 use super::group::By;
 use super::pairs::{Unit, pairs, ratio};
-use super::rate::{Ratio, rate_ratio};
+use super::rate::{IntervalMethod, Ratio, rate_ratio};
 use crate::Result;
 use crate::filter::ConflictFilter;
-use crate::logged::{LostRows, Progress};
+use crate::logged::{LoggedRun, LostRows, Progress};
 use closecall::detection::kind::{Kind, Severity};
 use closecall::util::units::counted;
 
@@ -32,18 +33,21 @@ pub struct Effects {
     pub rates_per: &'static str,
     /// The traffic after and before, in this unit.
     pub traffic: [f64; 2],
-    /// Which conflicts are counted.
+    /// The conflicts that the sentence, the manoeuvres and the places are about: the serious and critical ones where there
+    /// are any.
     pub what: &'static str,
-    /// The rows, all conflicts first.
+    /// The rows, those conflicts first.
     pub rows: Vec<Effect>,
     /// The difference in a sentence.
     pub sentence: String,
+    /// What neither set has, in a sentence; empty where both have some of everything.
+    pub none_of: String,
 }
 
 /// How the rate of a group of conflicts differs.
 #[derive(Clone, Debug, Serialize)]
 pub struct Effect {
-    /// What it is a group by; `all` for all conflicts.
+    /// What it is a group by; `all` for what is counted together.
     pub by: &'static str,
     /// Its name.
     pub group: String,
@@ -54,8 +58,7 @@ pub struct Effect {
 }
 
 impl Effects {
-    /// Compares the runs in the folders `after` with those in `before`: their serious and critical conflicts, unless the
-    /// filter names other severities. Returns the logs that lack rows too.
+    /// Compares the runs in the folders `after` with those in `before`. Returns the logs that lack rows too.
     ///
     /// # Errors
     /// Those of [`Collection::read`] and `Collection::check_alike`.
@@ -65,23 +68,31 @@ impl Effects {
         filter: &ConflictFilter,
         progress: &mut Progress,
     ) -> Result<(Self, Vec<LostRows>)> {
-        let mut filter = filter.clone();
-        let is_by_severity = filter.severities.is_empty();
-        if is_by_severity {
-            filter.severities = vec![Severity::Serious, Severity::Critical];
-        }
-        let mut read = |folders| {
-            let set = Collection::read(folders, By::Manoeuvre, &filter, 0, progress)?;
-            set.check_alike(folders)?;
-            Ok::<_, crate::Error>(set)
+        let mut read = |filter: &ConflictFilter| {
+            let mut of = |folders| {
+                let set = Collection::read(folders, By::Manoeuvre, filter, 0, progress)?;
+                set.check_alike(folders)?;
+                Ok::<_, crate::Error>(set)
+            };
+            Ok::<_, crate::Error>([of(after)?, of(before)?])
         };
-        let mut sets = [read(after)?, read(before)?];
-        let lost = sets.iter_mut().flat_map(|set| std::mem::take(&mut set.lost)).collect();
-        let what = if is_by_severity { "serious and critical conflicts" } else { "the conflicts" };
-        Ok((Self::between(&sets, what), lost))
+        let mut all = read(filter)?;
+        let lost = all.iter_mut().flat_map(|set| std::mem::take(&mut set.lost)).collect();
+        // Cautions are mostly ordinary following: where there is more, that is what matters.
+        let has = |severity| all.iter().any(|set| set.counts(None, Some(severity)).iter().any(|count| *count > 0.0));
+        let [has_cautions, has_serious, has_critical] = Severity::ALL.map(has);
+        let has_severe = has_serious || has_critical;
+        let severe = if has_cautions && has_severe {
+            Some(read(&ConflictFilter { severities: vec![Severity::Serious, Severity::Critical], ..filter.clone() })?)
+        } else {
+            None
+        };
+        let what = if has_severe { SEVERE } else { ALL };
+        // Of collisions only those of a whole run are known, run by run.
+        Ok((Self::between(&all, severe.as_ref().unwrap_or(&all), what, filter.is_empty()), lost))
     }
 
-    fn between(sets: &[Collection; 2], what: &'static str) -> Self {
+    fn between(all: &[Collection; 2], sets: &[Collection; 2], what: &'static str, has_collisions: bool) -> Self {
         let runs = sets.each_ref().map(|set| set.runs.iter().collect::<Vec<_>>());
         let unit = Unit::of(&[&runs[0], &runs[1]]);
         let traffic = runs.each_ref().map(|runs| unit.of_each(runs));
@@ -96,10 +107,23 @@ impl Effects {
             };
             Effect { by, group: group.to_owned(), counts, ratio }
         };
-        let counts = |kind, severity| sets.each_ref().map(|set| set.counts(kind, severity));
-        let mut rows = vec![row("all", "all", counts(None, None))];
+        let of = |sets: &[Collection; 2], kind, severity| sets.each_ref().map(|set| set.counts(kind, severity));
+        let counts = |kind, severity| of(all, kind, severity);
+        let mut rows = vec![row("all", what, of(sets, None, None))];
+        if what != ALL {
+            rows.push(row("all", ALL, counts(None, None)));
+        }
+        if has_collisions {
+            let collisions = |run: &&LoggedRun| run.summary.collisions as f64;
+            rows.push(row("all", "collisions", runs.each_ref().map(|runs| runs.iter().map(collisions).collect())));
+        }
+        let risk = row("all", RISK, all.each_ref().map(|set| set.risk.per_run(set.runs.len())));
+        // It is no count: the interval of one is none of its own.
+        let is_counted = risk.ratio.is_some_and(|ratio| ratio.method == IntervalMethod::PoissonExact);
+        rows.push(if is_counted { Effect { ratio: None, ..risk } } else { risk });
         rows.extend(Severity::ALL.map(|severity| row("severity", severity.name(), counts(None, Some(severity)))));
         rows.extend(Kind::ALL.map(|kind| row("kind", kind.name(), counts(Some(kind), None))));
+        let none_of = none_of(&rows);
         let per_run = |counts: [Option<&Counts>; 2]| {
             let of =
                 |set: usize| counts[set].map_or_else(|| vec![0.0; runs[set].len()], |of| of.per_run(runs[set].len()));
@@ -128,10 +152,32 @@ impl Effects {
         let mut places = spots(|set| &set.junctions, "junction");
         places.extend(spots(|set| &set.edges, "edge"));
         rows.extend(most(places));
-        rows.retain(|row| row.by == "all" || row.ratio.is_some());
+        rows.retain(|row| row.by == "all" || row.counts.iter().any(|count| *count > 0.0));
         let runs = runs.map(|runs| runs.len());
         let sentence = sentence(&rows[0], what, unit.name, runs);
-        Self { runs, rates_per: unit.name, traffic: all_traffic, what, rows, sentence }
+        Self { runs, rates_per: unit.name, traffic: all_traffic, what, rows, sentence, none_of }
+    }
+}
+
+/// The conflicts that are compared, in words.
+const SEVERE: &str = "serious and critical conflicts";
+const ALL: &str = "conflicts";
+const RISK: &str = "risk index";
+
+/// What neither set has, in a sentence.
+fn none_of(rows: &[Effect]) -> String {
+    let name = |row: &Effect| match row.by {
+        "all" => row.group.clone(),
+        _ => format!("{} conflicts", row.group.replace('_', "-")),
+    };
+    let absent = rows.iter().filter(|row| row.group != RISK && row.counts == [0.0; 2]).map(name).collect::<Vec<_>>();
+    match &absent[..] {
+        [] => String::new(),
+        [_, ..] if rows[0].counts == [0.0; 2] && rows[0].group == ALL => {
+            "Neither set of runs has conflicts.".to_owned()
+        }
+        [one] => format!("Neither set of runs has {one}."),
+        [first @ .., last] => format!("Neither set of runs has {} or {last}.", first.join(", ")),
     }
 }
 
@@ -153,7 +199,7 @@ fn sentence(all: &Effect, what: &str, unit: &str, [after, before]: [usize; 2]) -
     let per = unit.replace("vehicle_kilometre", "vehicle-kilometre");
     let counts = format!("{} and {} conflicts in {runs}", all.counts[0], all.counts[1]);
     let Some(Ratio { value, low, high, .. }) = all.ratio else {
-        return format!("Neither set of runs has {what} ({runs}).");
+        return format!("There is nothing to compare: {runs}, without {what}.");
     };
     let change = |ratio: f64| match (ratio - 1.0) * 100.0 {
         percent if percent.round() == 0.0 => AS_MANY.to_owned(),
@@ -181,7 +227,6 @@ fn sentence(all: &Effect, what: &str, unit: &str, [after, before]: [usize; 2]) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::statistics::rate::IntervalMethod;
 
     fn said(value: Option<f64>, low: f64, high: Option<f64>) -> String {
         let ratio = Some(Ratio { value, low, high, method: IntervalMethod::TOverRuns });
@@ -204,6 +249,24 @@ mod tests {
         );
         assert!(said(Some(1.001), 0.05, Some(21.6)).contains("interval: 95 % fewer to 22 times as many;"));
         assert!(said(None, 1.5, None).starts_with("There were serious and critical conflicts only after"));
+    }
+
+    #[test]
+    fn what_neither_set_has_is_named() {
+        let row = |by, group: &str, counts| Effect { by, group: group.to_owned(), counts, ratio: None };
+        let some = [row("all", ALL, [3.0, 0.0]), row("all", RISK, [0.0, 0.0]), row("severity", "serious", [1.0, 0.0])];
+        assert_eq!(none_of(&some), "");
+        let serious = row("severity", "serious", [0.0, 0.0]);
+        let one = [row("all", ALL, [3.0, 0.0]), serious.clone()];
+        assert_eq!(none_of(&one), "Neither set of runs has serious conflicts.");
+        let kinds = ["rear_end", "side"].map(|kind| row("kind", kind, [0.0, 0.0]));
+        let several =
+            [row("all", ALL, [3.0, 0.0]), row("all", "collisions", [0.0, 0.0]), serious].into_iter().chain(kinds);
+        assert_eq!(
+            none_of(&several.collect::<Vec<_>>()),
+            "Neither set of runs has collisions, serious conflicts, rear-end conflicts or side conflicts."
+        );
+        assert_eq!(none_of(&[row("all", ALL, [0.0, 0.0])]), "Neither set of runs has conflicts.");
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
+use crate::filter::NamedPlaces;
 use crate::logged::LoggedConflict;
 use closecall::detection::kind::{Kind, Severity};
 
@@ -26,6 +27,8 @@ pub enum By {
     Manoeuvre,
     /// Why it came about, by the strongest evidence.
     Cause,
+    /// The place of --places; conflicts elsewhere are one group.
+    Place,
     /// The simulated hour in which the margin was smallest.
     Hour,
 }
@@ -43,12 +46,13 @@ impl By {
             Self::Type => &["ego_type", "foe_type"],
             Self::Manoeuvre => &["manoeuvre"],
             Self::Cause => &["cause"],
+            Self::Place => &["lane", "x", "y"],
             Self::Hour => &["time"],
         }
     }
 
-    /// The group of a conflict.
-    pub fn group<'a>(self, conflict: &'a LoggedConflict) -> Cow<'a, str> {
+    /// The group of a conflict, at the named places if it is by place.
+    pub fn group<'a>(self, conflict: &'a LoggedConflict, named: Option<&'a NamedPlaces>) -> Cow<'a, str> {
         let place = |name: &'a str| if name.is_empty() { NOWHERE } else { name };
         match self {
             Self::Kind => conflict.kind.name().into(),
@@ -58,6 +62,7 @@ impl By {
             Self::Manoeuvre => place(&conflict.manoeuvre).into(),
             Self::Cause => place(conflict.cause.split(' ').next().unwrap_or_default()).into(),
             Self::Type => format!("{}/{}", plain(&conflict.ego_type), plain(&conflict.foe_type)).into(),
+            Self::Place => named.and_then(|named| named.of(conflict)).map_or(NOWHERE, |place| &place.name).into(),
             Self::Hour => ((conflict.time / 3600.0).floor() as i64).to_string().into(),
         }
     }
@@ -70,7 +75,9 @@ impl By {
                 Self::Kind => of(Kind::ALL.iter().position(|kind| kind.name() == name(group))),
                 Self::Severity => of(Severity::ALL.iter().position(|severity| severity.name() == name(group))),
                 Self::Hour => name(group).parse().unwrap_or(i64::MAX),
-                Self::Edge | Self::Junction | Self::Type | Self::Manoeuvre | Self::Cause => -(count(group) as i64),
+                Self::Edge | Self::Junction | Self::Type | Self::Manoeuvre | Self::Cause | Self::Place => {
+                    -(count(group) as i64)
+                }
             }
         };
         groups.sort_by(|a, b| (rank(a), name(a)).cmp(&(rank(b), name(b))));

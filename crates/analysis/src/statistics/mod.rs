@@ -130,6 +130,9 @@ impl Statistics {
             return Err(Error::NoLog);
         }
         request.filter.check()?;
+        if request.by == By::Place && request.filter.named.is_none() {
+            return Err(Error::Value("--by place needs a file of --places".to_owned()));
+        }
         let mut set = Collection::read(&request.folders, request.by, &request.filter, request.worst, progress)?;
         let mut left_out = std::mem::take(&mut set.left_out);
         let mut lost = std::mem::take(&mut set.lost);

@@ -116,7 +116,7 @@ impl OfRun {
             }
             found.read += 1;
             if filter.passes(conflict) {
-                found.add(run, conflict, by);
+                found.add(run, conflict, &by.group(conflict, filter.named.as_ref()));
                 if found.worst.takes(run, conflict) {
                     let whole = reader.whole_row()?;
                     whole.into_iter().for_each(|conflict| found.worst.add(run, folder, conflict));
@@ -132,9 +132,9 @@ impl OfRun {
         Ok(found)
     }
 
-    fn add(&mut self, run: usize, conflict: &LoggedConflict, by: By) {
+    fn add(&mut self, run: usize, conflict: &LoggedConflict, group: &str) {
         self.passed += 1;
-        update(&mut self.groups, &by.group(conflict), |group| {
+        update(&mut self.groups, group, |group| {
             group.counts.add(run);
             group.collisions += u64::from(conflict.collision);
             for (column, value) in group.columns.iter_mut().zip(measures(conflict)) {

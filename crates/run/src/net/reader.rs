@@ -131,7 +131,8 @@ impl NetReader<'_> {
         if self.net.edge_ids.insert(id.to_owned(), index).is_some() {
             return Err(self.wrong(format!("edge \"{id}\" is there twice")));
         }
-        self.net.edges.push(Edge { id: id.to_owned(), function, lanes: Vec::new(), junction, ends });
+        let street = attributes.get("name").unwrap_or_default().into();
+        self.net.edges.push(Edge { id: id.to_owned(), street, function, lanes: Vec::new(), junction, ends });
         Ok(())
     }
 

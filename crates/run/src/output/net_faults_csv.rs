@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::util::csv_safe::safe;
 use crate::util::output_file;
 use crate::{Error, Result};
+use closecall::util::remark::{Remark, RemarkCode};
 use closecall::util::units::{Metre, counted};
 
 /// The name of the file.
@@ -118,13 +119,13 @@ pub fn write(folder: &Path, faults: &[NetFault], is_safe: bool) -> Result<()> {
 }
 
 /// Two lines for the user: how many faults there are, and the worst; none without any.
-pub fn in_words(faults: &[NetFault], road_users: usize, folder: Option<&Path>) -> Vec<String> {
+pub fn in_words(faults: &[NetFault], road_users: usize, folder: Option<&Path>) -> Vec<Remark> {
     let Some(worst) = faults.first() else { return Vec::new() };
     let times = faults.iter().map(|fault| fault.times).sum::<u64>();
     let pairs = counted(faults.len() as u64, "pair");
     let file = folder.map_or_else(String::new, |folder| format!(": {}", folder.join(NET_FAULTS).display()));
     let NetFault { lane, other_lane, overlap, remedy, .. } = worst;
-    vec![
+    let lines = [
         format!(
             "net faults: at {pairs} of lanes SUMO drives road users through each other, {} with {}{file}",
             counted(times, "time"),
@@ -134,5 +135,6 @@ pub fn in_words(faults: &[NetFault], road_users: usize, folder: Option<&Path>) -
             "the worst is {lane} and {other_lane}, {}, {overlap:.2} m deep: {remedy}",
             counted(worst.times, "time")
         ),
-    ]
+    ];
+    lines.map(|text| Remark::new(RemarkCode::NetFaults, text)).into()
 }

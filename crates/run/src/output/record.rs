@@ -82,3 +82,28 @@ impl Versions {
         Self { closecall: env!("CARGO_PKG_VERSION"), sumo }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use closecall::util::remark::{Remark, RemarkCode};
+    use strum::VariantArray;
+
+    #[test]
+    fn the_codes_of_remarks_are_documented() {
+        let page = include_str!("../../../../docs/log.md");
+        // A later version's code is not known, and the place of an earlier log is said only.
+        let written = |code: &&RemarkCode| !matches!(code, RemarkCode::Other | RemarkCode::EarlierLog);
+        for code in RemarkCode::VARIANTS.iter().filter(written) {
+            assert!(page.contains(&format!("`{}`", code.name())), "{code:?}");
+        }
+    }
+
+    #[test]
+    fn the_remark_of_a_later_version_is_read() {
+        let read = serde_json::from_str::<Remark>(r#"{"code": "not_yet_known", "text": "a"}"#).unwrap();
+        assert_eq!(read, Remark::new(RemarkCode::Other, "a"));
+        for code in RemarkCode::VARIANTS {
+            assert_eq!(serde_json::to_value(code).unwrap(), code.name());
+        }
+    }
+}

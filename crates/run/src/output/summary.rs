@@ -11,6 +11,7 @@ use crate::util::decimal::Written;
 use closecall::detection::detector::{LeftOut, Work};
 use closecall::detection::kind::{Kind, Severity};
 use closecall::events::{Artefact, Conflict};
+use closecall::util::remark::Remark;
 use closecall::util::units::Second;
 
 /// How many conflicts are none of traffic's, by what they are.
@@ -51,9 +52,9 @@ pub struct Summary {
     /// The share of tests that was skipped; not written to `run.json`.
     #[serde(skip)]
     pub skipped: Skipped,
-    /// Settings that may not do what the user meant, a line each; not written to `run.json`.
-    #[serde(skip)]
-    pub remarks: Vec<String>,
+    /// What its reader should know before believing it.
+    #[serde(default)]
+    pub remarks: Vec<Remark>,
     /// Each part of the work and the seconds it took; not written to `run.json`.
     #[serde(skip)]
     pub spent: Vec<(&'static str, f64)>,
@@ -249,7 +250,7 @@ pub fn in_words(set_aside: &SetAside) -> Option<String> {
 }
 
 impl fmt::Display for Summary {
-    /// The table of conflicts, the amount of traffic, and the remarks.
+    /// The table of conflicts, the amount of traffic, and the remarks that were not said at the beginning.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{:<10}", "conflicts")?;
         for severity in Severity::ALL.iter().rev() {
@@ -286,7 +287,7 @@ impl fmt::Display for Summary {
             Written(self.begin),
             Written(self.end)
         )?;
-        self.remarks.iter().try_for_each(|remark| writeln!(f, "{remark}"))
+        self.remarks.iter().filter(|remark| !remark.code.is_of_opening()).try_for_each(|remark| writeln!(f, "{remark}"))
     }
 }
 

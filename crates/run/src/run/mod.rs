@@ -17,7 +17,7 @@ mod warm_up;
 mod writing;
 
 use std::collections::VecDeque;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use entering::Entering;
 use net_faults::NetFaults;
@@ -39,6 +39,7 @@ use closecall::traffic::placement::Placement;
 use closecall::traffic::profile::{Category, obstacle_name};
 use closecall::traffic::roster::{ProfileIndex, Roster, UserIndex};
 use closecall::traffic::signals::Signals;
+use closecall::util::remark::Remark;
 use closecall::util::units::{Metre, Second};
 use warm_up::WarmUp;
 use writing::Writing;
@@ -84,6 +85,8 @@ pub struct Run {
     type_settings: Vec<(String, String)>,
     /// How long a step lasts: as the source says, or else the time between the first two steps.
     step_length: Option<Second>,
+    /// What is said of the net, once it was asked for.
+    net_remarks: OnceLock<Vec<Remark>>,
     summary: Summary,
     ordinary_driving: OrdinaryDriving,
     entering: Entering,
@@ -129,6 +132,7 @@ impl Run {
             is_tracked: false,
             type_settings: type_settings(options),
             step_length: None,
+            net_remarks: OnceLock::new(),
             summary: Summary::default(),
             ordinary_driving: OrdinaryDriving::default(),
             entering: Entering::default(),

@@ -7,6 +7,7 @@ use closecall::events::Conflict;
 use closecall::traffic::profile::{Category, Profile};
 use closecall::traffic::roster::{ProfileIndex, Roster};
 use closecall::util::index::row_of;
+use closecall::util::remark::{Remark, RemarkCode};
 use closecall::util::units::MetrePerSecondSquared;
 
 /// An `emergencyDecel` above SUMO's default of passenger cars is worth a remark, in m/s²: hardly a tyre holds more on a dry
@@ -38,7 +39,7 @@ impl OrdinaryDriving {
     }
 
     /// A line for each way in which conflicts were made, with the types that come most often first.
-    pub fn remarks(&self, roster: &Roster) -> Vec<String> {
+    pub fn remarks(&self, roster: &Roster) -> Vec<Remark> {
         let follows = |of: &Profile| format!("{} from {:.0} km/h on", of.name, 3.6 * of.tailgates_from);
         let brakes = |of: &Profile| format!("{} with {} m/s²", of.name, of.brakes.deceleration);
         let (all, types) = (self.conflicts, |counts, text| types(counts, roster, text));
@@ -53,7 +54,8 @@ impl OrdinaryDriving {
                 "{count} of {all} conflicts have a foe that brakes harder than {HARDEST} m/s² (emergencyDecel: {types})"
             )
         });
-        following.into_iter().chain(braking).collect()
+        let found = [(RemarkCode::OrdinaryFollowing, following), (RemarkCode::HardBraking, braking)];
+        found.into_iter().filter_map(|(code, text)| Some(Remark::new(code, text?))).collect()
     }
 }
 
@@ -100,7 +102,7 @@ mod tests {
         stepped.unwrap();
         let summary = run.finish().unwrap();
         assert_eq!(summary.count(None, None), 1);
-        summary.remarks
+        summary.remarks.into_iter().map(|remark| remark.text).collect()
     }
 
     #[test]

@@ -19,6 +19,7 @@ use crate::util::output_file::same_file;
 use crate::util::panics;
 use crate::{Error, Result};
 use closecall::detection::detector::LeftOut;
+use closecall::util::remark::{Remark, RemarkCode};
 
 /// A run and the record of how it was made.
 pub struct RecordedRun {
@@ -40,8 +41,8 @@ pub struct Ending {
     pub error: Option<String>,
     /// What the source skipped.
     pub left_out: Vec<LeftOut>,
-    /// Lines for the user.
-    pub remarks: Vec<String>,
+    /// What it has to say of the scenario or the recording.
+    pub remarks: Vec<Remark>,
     /// Each part of the work and the seconds it took.
     pub spent: Vec<(&'static str, f64)>,
 }
@@ -58,7 +59,8 @@ impl RecordedRun {
         check_keeps_inputs(path, &record.inputs)?;
         let outputs = Outputs::create(files, run.net(), &record.inputs, record.options.model.artefacts)?;
         let earlier = if files.force { None } else { EarlierLog::keep(path)? };
-        let record = RunRecord { csv_safe: files.csv_safe, ..record };
+        let mut record = RunRecord { csv_safe: files.csv_safe, ..record };
+        record.summary.remarks = run.opening_remarks(record.step_length);
         match begin_log(path, &record) {
             Ok(log) => run.set_log(log, record.options.log.log_clips),
             Err(error) => {
@@ -79,8 +81,11 @@ impl RecordedRun {
     }
 
     /// Where the earlier log of the folder is now, if there was one, in a line for the user.
-    pub fn earlier_log(&self) -> Option<String> {
-        self.earlier.as_ref().map(|earlier| format!("the earlier log is kept in {}", earlier.kept.display()))
+    pub fn earlier_log(&self) -> Option<Remark> {
+        self.earlier.as_ref().map(|earlier| {
+            let text = format!("the earlier log is kept in {}", earlier.kept.display());
+            Remark::new(RemarkCode::EarlierLog, text)
+        })
     }
 
     /// Leaves the log and the other files to the process that opened them, if this one is a copy that was forked from it:
@@ -110,16 +115,24 @@ impl RecordedRun {
         let (faults, road_users) = self.run.net_faults();
         let log = self.run.writing.log.as_ref();
         let faults_written = log.map_or(Ok(()), |log| log.write_net_faults(&faults));
-        let faults = net_faults_csv::in_words(&faults, road_users, log.map(Log::folder));
+        let said = net_faults_csv::in_words(&faults, road_users, log.map(Log::folder));
+        // `run.json` has one remark for both lines, which names no place that may change.
+        let lines = net_faults_csv::in_words(&faults, road_users, None);
+        let faults = lines.into_iter().reduce(|one, other| Remark { text: format!("{one}; {other}"), ..one });
         let mut summary = self.run.summary.clone();
         summary.left_out.extend(left_out);
-        summary.remarks.extend(faults.into_iter().chain(remarks).chain(self.earlier_log()));
         summary.spent = spent;
+        // What is known before the first step is asked for where there is a log: it takes time with a large net.
+        let opening =
+            self.record.as_ref().map(|_| self.run.opening_remarks(self.run.step_length())).unwrap_or_default();
+        let mut recorded_summary = summary.clone();
+        recorded_summary.remarks = [opening, summary.remarks.clone(), Vec::from_iter(faults), remarks.clone()].concat();
+        summary.remarks.extend(said.into_iter().chain(remarks).chain(self.earlier_log()));
         self.run.summary.clone_from(&summary);
         let recorded = match (self.run.writing.log.take(), self.record.take()) {
             (Some(log), Some(record)) => log.write_record(&RunRecord {
                 step_length: self.run.step_length(),
-                summary: summary.clone(),
+                summary: recorded_summary,
                 complete: error.is_none(),
                 error,
                 conflicts_sha256: Some(log.digest()),

@@ -11,6 +11,7 @@ use closecall::events::{Alarm, Conflict, PetSoFar};
 use closecall::geometry::Point;
 use closecall::traffic::net::Net;
 use closecall::traffic::roster::UserIndex;
+use closecall::util::remark::{Remark, RemarkCode};
 
 impl Run {
     /// Works out the crash probability of each step of a conflict, because alarms are asked for it.
@@ -106,7 +107,10 @@ impl Run {
         self.summary.left_out = self.detector.left_out();
         self.summary.skipped = Skipped::of(&self.detector.work(), self.lane_lookups);
         let unmet = self.type_settings.iter().filter(|(_, name)| !self.roster.has_any_of(name));
-        let remarks = unmet.map(|(setting, _)| format!("{setting}: no road user of this type was in the scene"));
+        let remarks = unmet.map(|(setting, _)| {
+            let text = format!("{setting}: no road user of this type was in the scene");
+            Remark::new(RemarkCode::UnusedSetting, text)
+        });
         let of_settings = self.ordinary_driving.remarks(&self.roster);
         self.summary.remarks = remarks.chain(self.warm_up.remark()).chain(of_settings).collect();
         written.map(|()| self.summary.clone())

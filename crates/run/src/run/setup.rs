@@ -8,6 +8,7 @@ use closecall::detection::detector::shortcuts::Shortcuts;
 use closecall::events::Clips;
 use closecall::options::ClipLevel;
 use closecall::options::measures::Measures;
+use closecall::util::remark::{Remark, RemarkCode};
 use closecall::util::units::Second;
 
 /// Steps longer than this are worth a remark, in s: on our nets the rate of conflicts at 0.2 s is off by 2 to 24 %, at 0.1 s
@@ -16,14 +17,21 @@ const LONG_STEP: Second = 0.1001;
 
 impl Run {
     /// What the user should know before the run: how the net is drawn, and whether steps of this length are too long.
-    pub fn opening_remarks(&self, step_length: Option<Second>) -> Vec<String> {
-        let net = self.net.iter().flat_map(|net| net.remarks(self.detector.overlaps(), self.contact_tolerance));
+    pub fn opening_remarks(&self, step_length: Option<Second>) -> Vec<Remark> {
+        let of_net = || {
+            self.net
+                .as_deref()
+                .map(|net| net.remarks(self.detector.overlaps(), self.contact_tolerance))
+                .unwrap_or_default()
+        };
+        let net = self.net_remarks.get_or_init(of_net).iter().cloned();
         let steps = step_length.filter(|length| *length > LONG_STEP).map(|length| {
-            format!(
+            let text = format!(
                 "steps of {} s are long: what happens within a step is not seen, so that counts and TTC depend on the \
                  step length; 0.1 s is better (SUMO's --step-length), and closecall study SCENARIO measures by how much",
                 Written(length)
-            )
+            );
+            Remark::new(RemarkCode::LongSteps, text)
         });
         net.chain(steps).collect()
     }

@@ -3,6 +3,7 @@
 use crate::output::summary::Exposure;
 use crate::util::decimal::Written;
 use closecall::traffic::profile::Category;
+use closecall::util::remark::{Remark, RemarkCode};
 use closecall::util::units::{SAME_MOMENT, Second};
 
 /// How far a run is in its warm-up.
@@ -74,10 +75,14 @@ impl WarmUp {
     }
 
     /// What to tell at the end of a run that never left it.
-    pub fn remark(&self) -> Option<String> {
+    pub fn remark(&self) -> Option<Remark> {
         let lasted = !self.is_over && self.has_begun();
         lasted.then(|| {
-            format!("warmup: the run ended before {} s had passed, so that nothing was counted", Written(self.lasts))
+            let text = format!(
+                "warmup: the run ended before {} s had passed, so that nothing was counted",
+                Written(self.lasts)
+            );
+            Remark::new(RemarkCode::OnlyWarmUp, text)
         })
     }
 }

@@ -30,28 +30,36 @@ function forestCell({ value, low, high }) {
     ...lines, interval, ...ends, ...square);
 }
 
+/** A place of either set, by its streets where this page knows them. */
+function nameOfPlace(name) {
+  const place = conflicts.spots.indexOf(name);
+  return place < 0 ? name : nameOfSpot(place);
+}
+
 function showAgainst() {
   byId("change").hidden = !data.before;
   if (!data.before) return;
   const { effects } = data.before;
-  byId("sentence").textContent = effects.sentence;
+  byId("sentence").textContent = [effects.sentence, effects.none_of].filter(Boolean).join(" ");
   const unit = inWords(effects.rates_per).replace("vehicle kilometre", "vehicle-kilometre");
-  byId("compared").textContent = `Rates of ${effects.what} per ${unit}, after / before, with 95 % intervals (${number(effects.runs[0])} and `
+  byId("compared").textContent = `Rates per ${unit}, after / before, with 95 % intervals (${number(effects.runs[0])} and `
     + `${number(effects.runs[1])} runs). Left of 1: fewer. Grey: the interval includes 1, so that chance alone may explain the difference.`;
   const ticks = drawing("svg", { width: PLOT.width, height: 14, viewBox: `0 0 ${PLOT.width} 14`, "aria-hidden": "true" },
     ...RATIO_TICKS.map((tick) => drawing("text", { x: ratioPlace(tick), y: 11, "text-anchor": "middle", style: "fill: var(--faint); font-size: 11px" },
       tick < 1 ? `1/${1 / tick}` : String(tick))));
-  const head = make("tr", {}, ...["Conflicts", "After", "Before", "Ratio", "95 % interval"].map((textContent, place) =>
+  const head = make("tr", {}, ...["What", "After", "Before", "Ratio", "95 % interval"].map((textContent, place) =>
     make("th", { textContent, scope: "col", className: place ? "number" : "" })), make("th", { scope: "col" }, make("span", { className: "unseen", textContent: "Ratio and interval, drawn" }), ticks));
   const lines = [];
   let by = "";
   for (const row of effects.rows) {
-    if (row.by !== by && row.by !== "all") lines.push(make("tr", {}, make("th", { textContent: `by ${row.by}`, colSpan: 6, scope: "colgroup" })));
+    const ofWhat = ["manoeuvre", "place"].includes(row.by) ? effects.what : "conflicts";
+    if (row.by !== by && row.by !== "all") lines.push(make("tr", {}, make("th", { textContent: `${ofWhat} by ${row.by}`, colSpan: 6, scope: "colgroup" })));
     by = row.by;
     const { value, low, high } = row.ratio || {};
     const numbers = row.ratio ? [value === null ? "–" : ratioText(value), `${ratioText(low)} to ${high === null ? "∞" : ratioText(high)}`] : ["–", "–"];
-    const name = row.by === "all" ? effects.what : inWords(row.group || NOT_KNOWN);
-    lines.push(make("tr", {}, make("td", { textContent: name }), ...[...row.counts.map((many) => number(many)), ...numbers].map(numberCell),
+    const name = row.by === "place" ? nameOfPlace(row.group) : inWords(row.group || NOT_KNOWN);
+    const written = row.counts.map((many) => number(many, Number.isInteger(many) ? 0 : 2));
+    lines.push(make("tr", {}, make("td", { textContent: name }), ...[...written, ...numbers].map(numberCell),
       make("td", {}, ...(row.ratio ? [forestCell(row.ratio)] : []))));
   }
   byId("forest").replaceChildren(make("thead", {}, head), make("tbody", {}, ...lines));

@@ -5,7 +5,7 @@ let colours = {};
 function readColours() {
   const style = getComputedStyle(document.documentElement);
   const names = ["page", "card", "ink", "faint", "rule", "accent", "caution", "serious", "critical", "ground", "junction",
-    "road", "foot", "crossing", "within", "yield", "signal", "ego", "foe", "meeting", "heat-1", "heat-2", "heat-3", "heat-4",
+    "road", "foot", "crossing", "within", "yield", "signal", "meeting", "heat-1", "heat-2", "heat-3", "heat-4",
     "heat-5", "fewer-1", "fewer-2", "fewer-3", "more-1", "more-2", "more-3"];
   colours = Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
 }

@@ -19,17 +19,25 @@ const options = (data.runs.find((run) => run.options) || {}).options || data.def
 const variantOf = [];
 data.variants.forEach((variant, place) => variant.runs.forEach((run) => { variantOf[run] = place; }));
 
-/** The probability of a crash in each conflict; their sum is the risk index. Logs of early versions have none. */
-const risk = Float64Array.from(column.crash_probability, (value) => value || 0);
+/** What a conflict is that is none of traffic's; empty for the rest. */
+const artefactOf = (row) => conflicts.artefacts[column.artefact[row]];
+const isTraffic = (row) => !artefactOf(row);
+
+/** The probability of a crash in each conflict; their sum is the risk index. Logs of early versions have none, and what is not
+ * traffic is no danger. */
+const risk = Float64Array.from(column.crash_probability, (value, row) => (isTraffic(row) && value) || 0);
 
 /** Whether the log has crash probabilities: then places are ranked, and the map is coloured, by their sum. */
 const hasRisk = risk.some((of_row) => of_row > 0);
 
-/** The name of the first run's scenario: that of its file, without what follows the first dot. */
-const scenarioName = (() => {
-  const scenario = (data.runs.find((run) => run.scenario) || {}).scenario || "closecall";
-  return scenario.split(/[/\\]/).pop().split(".").find((part) => part) || "closecall";
+/** The name of a run's scenario: that of its file, without what follows the first dot. */
+const nameOfScenario = (run) => (run.scenario || "").split(/[/\\]/).pop().split(".").find((part) => part) || "closecall";
+/** Those of all runs, each once. */
+const scenarioNames = (() => {
+  const known = data.runs.filter((run) => run.scenario);
+  return known.length ? [...new Set(known.map(nameOfScenario))] : ["closecall"];
 })();
+const [scenarioName] = scenarioNames;
 
 /** The causes, each once, and for each combination of causes in the log whether it has each of them. */
 const CAUSES = [...new Set(conflicts.causes.flatMap((causes) => causes.split(" ")))].filter(Boolean).sort();
@@ -42,9 +50,6 @@ const strongestCause = (row) => conflicts.causes[column.cause[row]].split(" ")[0
 
 /** The conflicts that have a drawing: row → [row, ego, foe]. */
 const drawn = new Map(conflicts.drawn.map((entry) => [entry[0], entry]));
-
-/** What a conflict is that is none of traffic's; empty for the rest. */
-const artefactOf = (row) => conflicts.artefacts[column.artefact[row]];
 
 /** Order of rows, worst first: collision, severity, ΔV of collisions, crash probability, TTC, margin; last what is not traffic. */
 function worstFirst(a, b) {

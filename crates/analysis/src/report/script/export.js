@@ -4,12 +4,12 @@
 function exported() {
   const names = { ego: egoId, foe: foeId, kind: (row) => data.kinds[column.kind[row]], severity: (row) => data.severities[column.severity[row]],
     nearness: nearnessOf, consequence: consequenceOf, artefact: artefactOf,
-    manoeuvre: manoeuvreOf, cause: (row) => conflicts.causes[column.cause[row]], lane: laneId,
+    manoeuvre: manoeuvreOf, cause: (row) => conflicts.causes[column.cause[row]], lane: laneId, area: (row) => conflicts.areas[column.area[row]],
     ego_type: (row) => conflicts.types[column.ego_type[row]], foe_type: (row) => conflicts.types[column.foe_type[row]],
     run: (row) => data.runs[column.run[row]].folder, collision: (row) => Boolean(column.collision[row]), unavoidable: (row) => Boolean(column.unavoidable[row]) };
   const first = ["run", "id", "ego", "foe", "ego_type", "foe_type", "kind", "severity", "nearness", "consequence", "artefact",
     "manoeuvre", "cause", "lane", "collision"];
-  const rest = Object.keys(column).filter((name) => !first.includes(name) && !["ego_part", "foe_part", "delta_v"].includes(name));
+  const rest = Object.keys(column).filter((name) => !first.includes(name) && !["ego_part", "foe_part", "delta_v", ...(data.places ? [] : ["area"])].includes(name));
   return [...first, ...rest].map((name) => [name, names[name] || ((row) => column[name][row])]);
 }
 

@@ -7,7 +7,7 @@ const hasSevere = column.severity.some((severity) => severity > 0);
 /** Which conflicts the page shows. A choice is null for all; a place is a spot, or a circle in m. */
 const filter = {};
 const NO_FILTER = { kinds: [true, true, true], severities: [true, true, true], from: -Infinity, to: Infinity,
-  manoeuvre: null, cause: null, type: null, variant: null, run: null, spot: null, circle: null };
+  manoeuvre: null, cause: null, type: null, area: null, variant: null, run: null, spot: null, circle: null };
 const FIRST_FILTER = { ...NO_FILTER, severities: [!hasSevere, true, true] };
 const resetFilter = (to) => Object.assign(filter, to, { kinds: [...to.kinds], severities: [...to.severities] });
 resetFilter(FIRST_FILTER);
@@ -15,7 +15,7 @@ resetFilter(FIRST_FILTER);
 /** The rows that pass the filter; with a part of it left out: "period", "kinds" or "severities". */
 function shownRows(without) {
   const rows = [];
-  const { manoeuvre, cause, type, variant, run, spot, circle } = filter;
+  const { manoeuvre, cause, type, area, variant, run, spot, circle } = filter;
   const [kinds, severities] = ["kinds", "severities"].map((part) => (without === part ? NO_FILTER : filter)[part]);
   const { from, to } = without === "period" ? NO_FILTER : filter;
   for (let row = 0; row < count; row++) {
@@ -24,6 +24,7 @@ function shownRows(without) {
       && (manoeuvre === null || column.manoeuvre[row] === manoeuvre)
       && (cause === null || causesOf[column.cause[row]][cause])
       && (type === null || column.ego_type[row] === type || column.foe_type[row] === type)
+      && (area === null || column.area[row] === area)
       && (variant === null || variantOf[column.run[row]] === variant)
       && (run === null || column.run[row] === run)
       && (spot === null || spotOf(row) === spot)
@@ -35,7 +36,7 @@ function shownRows(without) {
 }
 
 /** The choices of one of many: the list of their names. */
-const CHOICES = { manoeuvre: conflicts.manoeuvres, cause: CAUSES, type: conflicts.types,
+const CHOICES = { manoeuvre: conflicts.manoeuvres, cause: CAUSES, type: conflicts.types, area: conflicts.areas,
   variant: data.variants.map((variant) => variant.name), run: data.runs.map((run, place) => String(place + 1)) };
 
 /** What was chosen, by the names of the command's options; nothing where it is as at first. */
@@ -76,12 +77,15 @@ function readAddress() {
   const circle = where.split(",").map(Number);
   if (where && spot >= 0) filter.spot = spot;
   else if (circle.length === 3 && circle.every(Number.isFinite)) filter.circle = circle;
+  opened.row = opened.rowOf(words.get("conflict"));
+  opened.missing = words.has("conflict") && opened.row === null ? words.get("conflict") : null;
   map.mode = map.modes().includes(words.get("map")) ? words.get("map") : map.first();
 }
 
 function writeAddress() {
   const words = filterWords();
   if (map.mode !== map.first()) words.push(["map", map.mode]);
+  if (opened.row !== null) words.push(["conflict", opened.addressOf(opened.row)]);
   const text = words.map(([name, value]) => `${name}=${encodeURIComponent(value).replaceAll("%2C", ",").replaceAll("%3A", ":")}`).join("&");
   if (text !== location.hash.slice(1)) history.replaceState(null, "", text ? `#${text}` : location.pathname + location.search);
 }
@@ -144,7 +148,7 @@ function showFilter() {
   byId("to").placeholder = Math.ceil(period[1]);
   const { spot, circle } = filter;
   byId("here").hidden = spot === null && !circle;
-  byId("there").textContent = spot !== null ? conflicts.spots[spot] || "no lane"
+  byId("there").textContent = spot !== null ? nameOfSpot(spot)
     : circle ? `${number(circle[2])} m around ${number(circle[0])}, ${number(circle[1])}` : "";
 }
 

@@ -3,13 +3,11 @@
 
 /** From more conflicts than this on, the map shows the density at first. */
 const FEW = 200;
-/** This many of the most dangerous places have a number on the map. */
-const MOST_BADGES = 3;
 const MODE_WORDS = { density: "risk index", points: "each conflict", difference: "after − before" };
 
 /** The numbers of the most dangerous places, each above its heaviest hexagon or in the middle of its conflicts. */
 function badgesOf(view, rows, mode) {
-  const most = spotRows(rows).slice(0, MOST_BADGES).filter((spot) => spot.risk > 0);
+  const most = numbered(rows);
   const taken = [];
   return most.flatMap((spot, rank) => {
     const place = mode === "density" ? density.heaviest(spot, view.scale) : spot;
@@ -21,6 +19,17 @@ function badgesOf(view, rows, mode) {
       { type: "circle", z2: 19, shape: { cx: x, cy: y, r: 2.5 }, style: { fill: colours.card, stroke: colours.ink, lineWidth: 1 } },
       { type: "circle", z2: 20, shape: { cx, cy, r: 10 }, style: { fill: colours.card, stroke: colours.ink, lineWidth: 1.5 } },
       { type: "text", z2: 21, x: cx, y: cy, style: { text: String(rank + 1), fill: colours.ink, font: `700 12px ${FONT}`, align: "center", verticalAlign: "middle" } }];
+  });
+}
+
+/** The outlines of the named places that are areas, with their names. */
+function outlines(view) {
+  const areas = (data.places || []).filter(({ polygon }) => polygon.length);
+  return areas.flatMap(({ name, polygon }) => {
+    const points = polygon.map(([x, y]) => [view.x + (x - view.left) * view.scale, view.y + view.height - (y - view.bottom) * view.scale]);
+    const top = points.reduce((highest, point) => (point[1] < highest[1] ? point : highest));
+    return [{ type: "polygon", z2: 15, silent: true, shape: { points }, style: { fill: null, stroke: colours.ink, lineWidth: 1.5, lineDash: [8, 5] } },
+      { type: "text", z2: 16, silent: true, x: top[0], y: top[1] - 3, style: { text: name, fill: colours.ink, stroke: colours.ground, lineWidth: 3, font: `600 12px ${FONT}`, align: "center", verticalAlign: "bottom" } }];
   });
 }
 
@@ -73,12 +82,12 @@ const map = {
       xAxis: this.axes.xAxis,
       yAxis: this.axes.yAxis,
       dataZoom: [{ id: "x", xAxisIndex: 0, ...zoom }, { id: "y", yAxisIndex: 0, ...zoom }],
-      series: [...(net ? [roadsSeries()] : []), this.series(rows)],
+      series: [...(data.tiles ? [tiles.series()] : []), ...(net ? [roadsSeries()] : []), this.series(rows)],
     });
     document.querySelectorAll("input[name=mode]").forEach((button) => { button.checked = button.value === this.mode; });
     this.point(null);
     this.showLegend();
-    const most = spotRows(rows).slice(0, MOST_BADGES).map((spot) => spotName(spot) + spotWords(spot));
+    const most = numbered(rows).map((spot) => spotName(spot) + spotWords(spot));
     describeChart(this.element, `Map of ${number(rows.length)} conflicts. ${most.join(" ")} The table of hot spots has the same as numbers.`);
   },
 
@@ -94,7 +103,7 @@ const map = {
         if (this.view.scale >= CLOSE !== wasClose) this.showLegend();
         // The table ranks the places by what happens after, not by the change.
         const badges = this.mode === "difference" ? [] : badgesOf(this.view, rows, this.mode);
-        const over = [...badges, ...faults.marks(this.view), ...scaleBar(1 / this.view.scale, this.view.height)];
+        const over = [...outlines(this.view), ...badges, ...opened.marks(this.view), ...faults.marks(this.view), ...scaleBar(1 / this.view.scale, this.view.height)];
         if (this.mode !== "points") {
           return { type: "group", $mergeChildren: false, children: [...density.children(this.view, rows, this.mode === "difference"), ...over] };
         }
@@ -156,12 +165,12 @@ const map = {
       make("div", { textContent: `${number(many)} conflicts here and around` }));
   },
 
-  /** Filters by the place that is clicked: the spot of the conflict there, or the circle of its hexagon. */
+  /** Opens the conflict whose sign is clicked, or filters by the circle of the hexagon. */
   choose(event) {
     if (!this.view) return;
     if (this.mode === "points") {
       const row = this.at(event.offsetX, event.offsetY);
-      if (row !== null) choosePlace(spotOf(row), null);
+      if (row !== null) opened.open(row);
       return;
     }
     const cell = this.cell(this.place(event));
@@ -254,6 +263,7 @@ const map = {
     }
     const circled = { points: "Circled numbers: the first places of the table, whole junctions and edges",
       density: "Circled numbers: the first places of the table, whole junctions and edges, each at its hexagon with the most" }[this.mode];
-    byId("legend").replaceChildren(words[this.mode], ...entries, ...(circled ? [make("span", { className: "said", textContent: circled })] : []));
+    const background = data.tiles ? [make("span", { className: "said", textContent: data.tiles.by })] : [];
+    byId("legend").replaceChildren(words[this.mode], ...entries, ...background, ...(circled && numbered(this.rows).length ? [make("span", { className: "said", textContent: circled })] : []));
   },
 };

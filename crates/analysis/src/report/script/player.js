@@ -160,14 +160,15 @@ class Player {
       const [, colour] = changes.findLast(([from]) => from <= place);
       polygon(pairs(corners), colour);
     }
-    const two = [{ colour: colours.ego, snapshot: 1 }, { colour: colours.foe, snapshot: 2 }];
-    if (clip.severity[place] >= 0 && drawn.has(row)) {
-      for (const { colour, snapshot } of two) {
+    // Both have the colour of the worst severity so far, as in sumo-gui and in a clip: a ring tells the ego from the foe.
+    const danger = clip.severity[place] >= 0 ? severityColour(clip.severity[place]) : null;
+    if (danger && drawn.has(row)) {
+      for (const snapshot of [1, 2]) {
         const { line, width } = figure(drawn.get(row)[snapshot]);
         if (line.length < 2) continue;
         context.beginPath();
         line.map(on).forEach(([x, y]) => context.lineTo(x, y));
-        Object.assign(context, { strokeStyle: colour, globalAlpha: 0.22, lineWidth: width * view.scale, lineJoin: "round" });
+        Object.assign(context, { strokeStyle: danger, globalAlpha: 0.22, lineWidth: width * view.scale, lineJoin: "round" });
         context.stroke();
         context.globalAlpha = 1;
       }
@@ -179,13 +180,14 @@ class Player {
     order.forEach((number_of) => {
       const user = clip.users[number_of];
       if (user.outlines) {
-        user.outlines.forEach((outline) => polygon(pairs(outline), two[number_of]?.colour || colours.faint, colours.ink));
+        user.outlines.forEach((outline) => polygon(pairs(outline), (number_of < 2 && danger) || colours.faint, colours.ink));
         return;
       }
       const pose = poseAt(clip, user, place, time);
       if (!pose) return;
       const shape = figure([...pose, user.length, user.width]);
-      const fill = two[number_of] ? two[number_of].colour : colours.card;
+      const isOfPair = number_of < 2;
+      const fill = (isOfPair && danger) || colours.card;
       if (user.category === "person") {
         const [x, y] = on(pose);
         context.beginPath();
@@ -195,9 +197,19 @@ class Player {
         context.stroke();
       } else {
         polygon(shape.corners, fill, colours.ink);
-        polygon(shape.nose, two[number_of] ? colours.card : colours.faint);
+        polygon(shape.nose, isOfPair && danger ? colours.card : colours.faint);
       }
-      if (two[number_of]) labels.push([["ego", "foe"][number_of], two[number_of].colour, on(pose)]);
+      if (!isOfPair) return;
+      const around = user.category === "person" ? circleAround(on(pose), Math.max(0.4 * view.scale, 4)) : shape.corners.map(on);
+      const ring = ringOf(around, number_of === 0);
+      context.beginPath();
+      ring.points.forEach(([x, y]) => context.lineTo(x, y));
+      context.closePath();
+      Object.assign(context, { strokeStyle: colours.ink, lineWidth: ring.lineWidth });
+      context.setLineDash(ring.lineDash);
+      context.stroke();
+      context.setLineDash([]);
+      labels.push([["ego", "foe"][number_of], on(pose)]);
     });
     if (clip.severity[place] >= 0) {
       const [x, y] = on([column.x[row], column.y[row]]);
@@ -208,8 +220,8 @@ class Player {
     }
     Object.assign(context, { font: `600 12px ${FONT}`, textAlign: "center", strokeStyle: colours.ground, lineWidth: 3, lineJoin: "round" });
     // The upper label above its front, the other one below it.
-    labels.sort((a, b) => a[2][1] - b[2][1]).forEach(([text, colour, [x, y]], below) => {
-      context.fillStyle = colour;
+    labels.sort((a, b) => a[1][1] - b[1][1]).forEach(([text, [x, y]], below) => {
+      context.fillStyle = colours.ink;
       context.strokeText(text, x, below ? y + 20 : y - 12);
       context.fillText(text, x, below ? y + 20 : y - 12);
     });
@@ -227,6 +239,10 @@ class Player {
   }
 }
 Player.playing = null;
+
+/** The corners of a polygon that looks like a circle. */
+const circleAround = ([x, y], radius) => Array.from({ length: 16 }, (_, corner) =>
+  [x + radius * Math.cos((corner * Math.PI) / 8), y + radius * Math.sin((corner * Math.PI) / 8)]);
 
 /** Numbers two by two. */
 const pairs = (numbers) => Array.from({ length: numbers.length / 2 }, (_, place) => [numbers[2 * place], numbers[2 * place + 1]]);

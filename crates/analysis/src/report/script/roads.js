@@ -1,4 +1,4 @@
-// The net, and views of it with the same scale on both axes.
+// The net, painted on a canvas in a view of the same scale on both axes.
 
 /** The least width of a lane on the screen, in pixels. */
 const THINNEST = 0.8;
@@ -59,14 +59,6 @@ function trace(context, { lines, view, closed }) {
   }
 }
 
-const Roads = echarts.graphic.extendShape({
-  shape: { lines: null, view: null, closed: false },
-  buildPath(context, shape) {
-    if (shape.lines) trace(context, shape);
-  },
-});
-echarts.graphic.registerShape("roads", Roads);
-
 /** The net from the ground up: groups of lines, each with its style at this many pixels per metre. */
 function roadLayers(scale) {
   const layers = [{ lines: net.junctions, closed: true, style: { fill: colours.junction, stroke: null } }];
@@ -97,26 +89,6 @@ function paintRoads(context, view) {
   }
   context.globalAlpha = 1;
   context.setLineDash([]);
-}
-
-/** The chart's position on the screen, its pixels per metre, and the coordinates of its lower left corner. */
-function viewOf(params, api) {
-  const { x, y, width, height } = params.coordSys;
-  const origin = api.coord([0, 0]);
-  const scale = api.coord([1, 0])[0] - origin[0];
-  return { x, y, width, height, scale, left: (x - origin[0]) / scale, bottom: (origin[1] - y - height) / scale };
-}
-
-/** The series that draws the net in the background. */
-function roadsSeries() {
-  return {
-    id: "roads", type: "custom", coordinateSystem: "cartesian2d", data: [[0, 0]], silent: true, z: 0, clip: true,
-    tooltip: { show: false },
-    renderItem(params, api) {
-      const view = viewOf(params, api);
-      return { type: "group", children: roadLayers(view.scale).map(({ lines, closed, style }) => ({ type: "roads", shape: { lines, view, closed }, style })) };
-    },
-  };
 }
 
 /** The bounding box of the net and all conflicts, in m. */

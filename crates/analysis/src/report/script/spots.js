@@ -7,7 +7,8 @@ function sums(rows) {
   const counts = SEVERITIES.map(() => 0);
   let all = 0;
   for (const row of rows) {
-    counts[column.severity[row]]++;
+    // What is not traffic is shown if it is asked for, and counted nowhere.
+    if (isTraffic(row)) counts[column.severity[row]]++;
     all += risk[row];
   }
   return { rows, counts, risk: all };
@@ -35,115 +36,41 @@ function usual(rows, name) {
 const manoeuvreOf = (row) => conflicts.manoeuvres[column.manoeuvre[row]];
 const causeNames = (row) => CAUSES.filter((_, cause) => causesOf[column.cause[row]][cause]);
 
-/** Quantiles of Student's t for 95 % by degrees of freedom from 1 on. */
-const T = [12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646, 2.306, 2.2622];
-const Z = 1.959964;
-
-/** The same for any degrees of freedom: beyond the table by Cornish and Fisher's expansion, right to 1e-4. */
-function studentsT(freedom) {
-  const [z3, z5, z7] = [Z ** 3, Z ** 5, Z ** 7];
-  return T[freedom - 1] || Z + (z3 + Z) / (4 * freedom) + (5 * z5 + 16 * z3 + 3 * Z) / (96 * freedom ** 2)
-    + (3 * z7 + 19 * z5 + 17 * z3 - 15 * Z) / (384 * freedom ** 3);
-}
-
-/** ln Γ(x + 1) (Stirling's series, above 10). */
-function logFactorial(x) {
-  let [at, shift] = [x + 1, 0];
-  while (at < 10) shift += Math.log(at++);
-  return (at - 0.5) * Math.log(at) - at + 0.5 * Math.log(2 * Math.PI) + 1 / (12 * at) - 1 / (360 * at ** 3) - shift;
-}
-
-/** The share of a gamma distribution of this shape, and scale 1, below x. */
-function gammaShare(shape, x) {
-  let [term, sum] = [1, 1];
-  for (let n = 1; term > 1e-12 * sum; n++) {
-    term *= x / (shape + n);
-    sum += term;
+/** The spots of some rows, the largest risk index first; those of one variant know it. */
+function spotsOf(rows, variant = filter.variant) {
+  const spots = [...grouped(rows, (row) => [spotOf(row)])].map(([place, of_place]) => {
+    const spot = { place, variant, ...sums(of_place) };
+    const weight = (row) => risk[row] + 1e-9;
+    const all = of_place.reduce((sum, row) => sum + weight(row), 0);
+    [spot.x, spot.y] = [column.x, column.y].map((axis) => of_place.reduce((sum, row) => sum + weight(row) * axis[row], 0) / all);
+    return spot;
+  });
+  const entered = enteringByPlace();
+  for (const spot of spots) {
+    spot.entered = entered.get(conflicts.spots[spot.place]) || null;
+    spot.rate = spot.entered && (PER_ENTERING * spot.risk) / spot.entered;
   }
-  return sum * Math.exp(shape * Math.log(x) - x - logFactorial(shape));
+  spots.sort((a, b) => b.risk - a.risk || b.counts[2] - a.counts[2] || b.rows.length - a.rows.length || a.place - b.place);
+  spots.forEach((spot, rank) => { spot.rank = rank + 1; });
+  return spots;
 }
 
-/** The value below which this share, 0.025 or 0.975, of a gamma distribution of this shape and scale 1 is. */
-function gammaQuantile(shape, share) {
-  // Wilson and Hilferty's (1931) is right to 1e-5 there.
-  if (shape > 200) return shape * (1 - 1 / (9 * shape) + Math.sign(share - 0.5) * Z * Math.sqrt(1 / (9 * shape))) ** 3;
-  let [low, high] = [0, shape + 10 * Math.sqrt(shape) + 20];
-  for (let halving = 0; halving < 60; halving++) {
-    const middle = (low + high) / 2;
-    if (gammaShare(shape, middle) < share) low = middle;
-    else high = middle;
-  }
-  return low;
-}
-
-/** Sums of runs that spread by less than this, relatively, are equal. */
-const EQUAL = 1e-9;
-
-/**
- * The 95 % interval of the risk index of some conflicts, that of `closecall stats`: over the runs by the ratio estimator,
- * where there are several of one variant that differ; otherwise that of a sum of independent rare events, each with its
- * weight (Fay and Feuer 1997). `traffic` of each run: equal, or the vehicles that entered.
- */
-function riskInterval(rows, traffic = () => 1) {
-  const runs = filter.run === null && (data.variants.length < 2 || filter.variant !== null)
-    ? data.runs.map((_, run) => run).filter((run) => filter.variant === null || variantOf[run] === filter.variant) : [];
-  const sum = rows.reduce((all, row) => all + risk[row], 0);
-  if (sum <= 0) return [0, 0];
-  if (runs.length > 1) {
-    const ofRun = new Map(runs.map((run) => [run, 0]));
-    for (const row of rows) ofRun.set(column.run[row], (ofRun.get(column.run[row]) || 0) + risk[row]);
-    const many = ofRun.size;
-    const all = [...ofRun.keys()].reduce((total, run) => total + traffic(run), 0);
-    const squares = [...ofRun].reduce((total, [run, value]) => total + (value - (sum / all) * traffic(run)) ** 2, 0);
-    const error = Math.sqrt((squares * many) / (many - 1));
-    const reach = studentsT(many - 1) * error;
-    const differ = [...ofRun.values()].some((value) => Math.abs(value * many - sum) > EQUAL * sum);
-    if (differ && error > EQUAL * sum) return [Math.max(0, sum - reach), sum + reach];
-  }
-  let [squares, greatest] = [0, 0];
-  for (const row of rows) {
-    squares += risk[row] ** 2;
-    greatest = Math.max(greatest, risk[row]);
-  }
-  const low = (squares / sum) * gammaQuantile(sum ** 2 / squares, 0.025);
-  const [more_squares, more] = [squares + greatest ** 2, sum + greatest];
-  return [low, (more_squares / more) * gammaQuantile(more ** 2 / more_squares, 0.975)];
-}
-
-/** The interval of a group, computed once. */
-const intervalOf = (group) => (group.interval ||= riskInterval(group.rows));
-/** Whether chance may have put a spot behind another: their intervals overlap. */
-const mayOutrank = (spot, other) => intervalOf(spot)[1] >= intervalOf(other)[0];
-
-/** The spots of some rows, the largest risk index first; kept until the rows change. */
+/** The same, kept until the rows change. */
 function spotRows(rows) {
-  if (spotRows.rows !== rows) {
-    const spots = [...grouped(rows, (row) => [spotOf(row)])].map(([place, of_place]) => {
-      const spot = { place, ...sums(of_place) };
-      const weight = (row) => risk[row] + 1e-9;
-      const all = of_place.reduce((sum, row) => sum + weight(row), 0);
-      [spot.x, spot.y] = [column.x, column.y].map((axis) => of_place.reduce((sum, row) => sum + weight(row) * axis[row], 0) / all);
-      return spot;
-    });
-    const entered = enteringByPlace();
-    for (const spot of spots) {
-      spot.entered = entered.get(spotName(spot)) || null;
-      spot.rate = spot.entered && (PER_ENTERING * spot.risk) / spot.entered;
-    }
-    spots.sort((a, b) => b.risk - a.risk || b.counts[2] - a.counts[2] || b.rows.length - a.rows.length || a.place - b.place);
-    spots.forEach((spot, rank) => { spot.rank = rank + 1; });
-    Object.assign(spotRows, { rows, spots });
-  }
+  if (spotRows.rows !== rows) Object.assign(spotRows, { rows, spots: spotsOf(rows) });
   return spotRows.spots;
 }
+
+/** The runs that the filter lets through. */
+const shownRuns = () => data.runs.filter((_, run) => (filter.run === null || filter.run === run) && (filter.variant === null || filter.variant === variantOf[run]));
 
 /** The vehicles that entered each junction in the runs that are shown, by the junction's name; empty where that is not known. */
 function enteringByPlace() {
   const entered = new Map();
-  // Of a period only the conflicts are known, not the traffic.
-  if (Number.isFinite(filter.from) || Number.isFinite(filter.to)) return entered;
-  const runs = data.runs.filter((_, run) => (filter.run === null || filter.run === run) && (filter.variant === null || filter.variant === variantOf[run]));
-  // Runs of earlier versions and killed runs have no such counts.
+  // Of a period only the conflicts are known, not the traffic; and plans are not one traffic.
+  if (isOfPeriod() || plansShown().length) return entered;
+  const runs = shownRuns();
+  // A run of an earlier version, or one that was killed, has no such counts.
   if (!runs.every((run) => run.summary?.steps > 0 && run.summary.entered)) return entered;
   for (const run of runs) {
     for (const [junction, vehicles] of Object.entries(run.summary.entered)) {
@@ -159,13 +86,18 @@ const PER_ENTERING = 1000;
 /** The risk index per entering vehicles with its interval. */
 function rateWords({ rate, entered, ...spot }) {
   if (rate === null) return "–";
-  const junction = spotName(spot).replace(/^junction /, "");
+  const junction = conflicts.spots[spot.place].replace(/^junction /, "");
   const ends = riskInterval(spot.rows, (run) => data.runs[run].summary.entered[junction] || 0).map((end) => (PER_ENTERING * end) / entered);
   const [middle, low, high] = [rate, ...ends].map((value) => number(value, value < 10 ? 1 : 0));
   return `${middle} (${low} to ${high})`;
 }
 
-const spotName = (spot) => conflicts.spots[spot.place] || "no lane";
+/** A place as people know it: by its streets where the net names them, and by its id. */
+function nameOfSpot(place) {
+  const street = conflicts.streets[place];
+  return street ? `${street} (${conflicts.spots[place]})` : conflicts.spots[place] || "no lane";
+}
+const spotName = (spot) => nameOfSpot(spot.place);
 
 /** What is said of a spot behind its name: how dangerous it is, what happens there, and why. */
 function spotWords(spot) {
@@ -173,8 +105,13 @@ function spotWords(spot) {
   const cause = usual(spot.rows, strongestCause);
   const why = [manoeuvre && `mostly ${OFTEN[manoeuvre] || inWords(manoeuvre)}`, cause && (WHY[cause] || inWords(cause))].filter(Boolean).join("; ");
   const counts = [[2, "critical"], [1, "serious"]].filter(([severity]) => spot.counts[severity]).map(([severity, name]) => `${number(spot.counts[severity])} ${name}`);
+  return `: risk index ${number(spot.risk, 1)}${bracketsOf(spot)}${counts.length ? `, ${counts.join(", ")}` : ""}${why ? `, ${why}` : ""}.`;
+}
+
+/** The interval of a spot in brackets; empty where both of its ends are written alike, as it would say nothing. */
+function bracketsOf(spot) {
   const [low, high] = intervalOf(spot).map((end) => number(end, 1));
-  return `: risk index ${number(spot.risk, 1)} (${low} to ${high})${counts.length ? `, ${counts.join(", ")}` : ""}${why ? `, ${why}` : ""}.`;
+  return low === high ? "" : ` (${low} to ${high})`;
 }
 
 /** A bar as long as the risk index, in the shares of the severities. */
@@ -207,7 +144,9 @@ class SortedTable {
     const { by, down } = this;
     // A severity that the filter leaves out has no column.
     const hasEntering = this.groups.some((group) => group.entered);
-    const columns = this.columns.filter(({ severity, entering }) => (severity === undefined || filter.severities[severity]) && (!entering || hasEntering));
+    const plans = plansShown();
+    const columns = this.columns.filter(({ severity, entering, plan, single }) => (severity === undefined || filter.severities[severity])
+      && (!entering || hasEntering) && (plan === undefined || (plan < plans.length && plans.length <= MOST_PLANS)) && !(single && plans.length));
     const head = make("tr", {}, ...columns.map((column_of, place) => {
       const cell = make("th", { className: column_of === BAR ? "share" : column_of.text ? "" : "number", scope: "col" });
       cell.setAttribute("aria-sort", column_of === this.columns[by] ? (down ? "descending" : "ascending") : "none");
@@ -216,7 +155,8 @@ class SortedTable {
         if (!column_of.heading || column_of === BAR) cell.setAttribute("aria-hidden", "true");
         return cell;
       }
-      const button = make("button", { type: "button", textContent: `${column_of.heading}${column_of === this.columns[by] ? (down ? "\u00a0▾" : "\u00a0▴") : ""}` });
+      const title = headingOf(column_of);
+      const button = make("button", { type: "button", textContent: `${title}${column_of === this.columns[by] ? (down ? "\u00a0▾" : "\u00a0▴") : ""}` });
       button.onclick = () => {
         this.down = column_of === this.columns[by] ? !down : !column_of.text;
         this.by = this.columns.indexOf(column_of);
@@ -225,7 +165,7 @@ class SortedTable {
       };
       cell.append(button);
       // Paper repeats the heading on each page, but no buttons.
-      cell.dataset.heading = column_of.heading;
+      cell.dataset.heading = title;
       return cell;
     }));
     const value = this.columns[by].value;
@@ -242,22 +182,31 @@ class SortedTable {
   }
 }
 
+/** The heading of a column; those of plans have the plans' names. */
+const headingOf = ({ heading, plan }) => (plan === undefined ? heading : `${heading}, ${planNames()[plan]}`);
+
 const textCell = (text) => make("td", { textContent: text });
 const numberCell = (text) => make("td", { className: "number", textContent: text });
 
 /** The columns that all tables have: the risk index with its interval, counts, and a bar. */
 const COMMON = [
   { heading: "Risk index", value: (group) => group.risk, cell: (group) => numberCell(number(group.risk, 2)) },
-  { heading: "95 % interval", cell: (group) => numberCell(intervalOf(group).map((end) => number(end, 2)).join(" to ")) },
+  { heading: "95 % interval", single: true, cell: (group) => numberCell(intervalOf(group).map((end) => number(end, 2)).join(" to ")) },
   ...[2, 1, 0].map((severity) => ({ heading: SEVERITIES[severity], severity, value: (group) => group.counts[severity],
     cell: (group) => numberCell(number(group.counts[severity])) })),
 ];
 const BAR = { heading: "by severity", cell: shareBar };
 
+/** The risk index of a place in each of several plans. */
+const BY_PLAN = Array.from({ length: MOST_PLANS }, (_, plan) => {
+  const riskOf = (group) => group.rows.reduce((sum, row) => sum + (variantOf[column.run[row]] === plan ? risk[row] : 0), 0);
+  return { heading: "Risk index", plan, value: riskOf, cell: (group) => numberCell(number(riskOf(group), 2)) };
+});
+
 /** A first column whose names are buttons. */
 function nameColumn(heading, name, press, isPressed) {
   return { heading, text: true, value: name, cell: (group) => {
-    if (group.name === "") return make("td", { textContent: NOT_KNOWN });
+    if (group.name === "") return make("td", { textContent: heading === "Named place" ? "elsewhere" : NOT_KNOWN });
     const button = make("button", { type: "button", textContent: name(group) });
     button.setAttribute("aria-pressed", isPressed(group));
     button.onclick = () => press(group);
@@ -266,12 +215,14 @@ function nameColumn(heading, name, press, isPressed) {
 }
 
 const hotSpots = new SortedTable(byId("spots"), [
-  { heading: "", text: true, cell: (group) => make("td", { className: "rank" }, make("span", { textContent: group.rank }), ...unfoldButton(group)) },
+  { heading: "", text: true, cell: (group) => make("td", { className: "rank" }, make("span", { textContent: plansShown().length ? "" : group.rank }), ...unfoldButton(group)) },
   nameColumn("Place", spotName, (group) => {
     choosePlace(filter.spot === group.place ? null : group.place, null);
     map.go(group.x, group.y, 120);
   }, (group) => filter.spot === group.place),
-  ...COMMON.slice(0, 2),
+  { ...COMMON[0], single: true },
+  COMMON[1],
+  ...BY_PLAN,
   { heading: "per 1,000 entering", entering: true, value: (group) => group.rate ?? -1, cell: (group) => numberCell(rateWords(group)) },
   ...COMMON.slice(2),
   { heading: "Mostly", text: true, value: (group) => usual(group.rows, manoeuvreOf), cell: (group) => textCell(inWords(usual(group.rows, manoeuvreOf)) || NOT_KNOWN) },
@@ -301,20 +252,24 @@ const choiceTable = (id, heading, name, names) => new SortedTable(byId(id), [
   nameColumn(heading, (group) => inWords(group.name),
     (group) => choose(name, filter[name] === names.indexOf(group.name) ? null : names.indexOf(group.name)),
     (group) => filter[name] !== null && filter[name] === names.indexOf(group.name)),
-  ...COMMON, BAR], 1);
+  { ...COMMON[0], single: true }, ...COMMON.slice(1), ...BY_PLAN, BAR], 1);
 const byManoeuvre = choiceTable("manoeuvres", "Manoeuvre", "manoeuvre", conflicts.manoeuvres);
+const byArea = choiceTable("areas", "Named place", "area", conflicts.areas);
 const byCause = choiceTable("causes", "Cause", "cause", CAUSES);
 
 /** Shows the tables of the rows that pass the filter. */
 function showSpots(rows) {
   const spots = spotRows(rows);
+  byId("hot").hidden = plansShown().length > MOST_PLANS;
   hotSpots.show(spots);
   const listed = spots.slice(0, MOST_SPOTS);
   byId("per").hidden = !spots.some((spot) => spot.entered);
-  const others = listed.slice(1).filter((spot) => mayOutrank(spot, listed[0])).length;
-  byId("doubt").textContent = others ? `The intervals of ${number(others)} of the ${number(listed.length - 1)} places after the first overlap its own: their ranks may be chance.` : "";
+  const isRanked = hasRisk && !plansShown().length;
+  byId("doubt").textContent = isRanked ? doubtWords(listed) : "";
   const ranked = (groupsOf) => [...grouped(rows, groupsOf)].map(([name, of_name]) => ({ name, ...sums(of_name) }))
     .sort((a, b) => (a.name === "") - (b.name === "") || b.risk - a.risk || b.rows.length - a.rows.length).map((group, place) => ({ ...group, rank: place + 1 }));
+  byId("ofareas").hidden = !data.places;
+  if (data.places) byArea.show(ranked((row) => [conflicts.areas[column.area[row]]]));
   byManoeuvre.show(ranked((row) => [manoeuvreOf(row)]));
   byCause.show(ranked((row) => (causeNames(row).length ? causeNames(row) : [""])));
 }

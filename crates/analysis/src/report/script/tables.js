@@ -6,7 +6,6 @@ const MOST_WORST = 60;
 const worst = {
   rows: [],
   many: FIRST_WORST,
-  charts: [],
 
   show(rows) {
     this.rows = worstRows(rows, MOST_WORST);
@@ -19,46 +18,60 @@ const worst = {
   },
 
   draw() {
-    for (const chart of this.charts) chart.dispose();
-    this.charts = [];
-    this.players = [];
-    const shown = this.rows.slice(0, this.many);
-    byId("worst").replaceChildren(...shown.map((row) => this.card(row)));
-    const rest = this.rows.length - shown.length;
+    this.cards?.forEach((card) => card.dispose());
+    this.cards = this.rows.slice(0, this.many).map((row) => new Card(row));
+    byId("worst").replaceChildren(...this.cards.map((card) => make("li", {}, ...card.parts)));
+    const rest = this.rows.length - this.cards.length;
     byId("more").hidden = rest <= 0;
     byId("more").textContent = `Show ${Math.min(FIRST_WORST, rest)} more of the ${this.rows.length} worst`;
-    this.charts.push(...this.players);
-    this.players.forEach((player) => player.start());
-    for (const row of shown) {
-      if (drawn.has(row) && !clipOf(row)) this.charts.push(drawScene(byId(`scene-${row}`), row));
-    }
-  },
-
-  card(row) {
-    const severity = column.severity[row];
-    const run = data.runs.length > 1 ? `, run ${column.run[row] + 1}` : "";
-    const heading = make("h3", {}, sign(column.kind[row], severityColour(severity)),
-      `${SEVERITIES[severity]}, ${KINDS[column.kind[row]]}, no. ${column.id[row]}${run}`);
-    const player = clipOf(row) && new Player(row);
-    const go = make("button", { type: "button", textContent: "Show on the map" });
-    go.onclick = () => map.go(column.x[row], column.y[row], 80);
-    const figures = make("details", {}, make("summary", { textContent: player ? "Figures, and the command for sumo-gui" : "Figures" }), make("p", { textContent: figuresOf(row) }));
-    // Paper unfolds nothing.
-    figures.open = "print" in document.documentElement.dataset;
-    const text = make("div", { className: "text" }, heading, make("p", { textContent: storyOf(row) }), figures, go);
-    if (player) {
-      this.players.push(player);
-      const words = ["closecall", "show", data.runs[column.run[row]].folder, String(column.id[row])];
-      figures.append(make("p", { className: "screen" }, "Play it in sumo-gui: ", make("code", { textContent: words.map(quoted).join(" ") })));
-      return make("li", {}, player.element, text);
-    }
-    if (!drawn.has(row)) return make("li", {}, text);
-    const picture = make("div", { className: "chart", id: `scene-${row}` });
-    picture.setAttribute("role", "img");
-    picture.setAttribute("aria-label", "Both road users at the worst step");
-    return make("li", {}, picture, text);
+    this.cards.forEach((card) => card.start());
   },
 };
+
+/** A conflict: its clip, or a drawing of its worst step, and what it was in words. */
+class Card {
+  constructor(row, hasLink = true) {
+    this.row = row;
+    const severity = column.severity[row];
+    const run = data.runs.length > 1 ? `, run ${column.run[row] + 1}` : "";
+    const title = `no. ${column.id[row]}${run}`;
+    const heading = make("h3", {}, sign(column.kind[row], severityColour(severity)), `${SEVERITIES[severity]}, ${KINDS[column.kind[row]]}, `,
+      hasLink ? make("a", { href: `#conflict=${opened.addressOf(row)}`, textContent: title, onclick: (event) => {
+        event.preventDefault();
+        opened.open(row);
+      } }) : title);
+    this.player = clipOf(row) ? new Player(row) : null;
+    const go = make("button", { type: "button", textContent: "Show on the map" });
+    go.onclick = () => map.go(column.x[row], column.y[row], 80);
+    const figures = make("details", {}, make("summary", { textContent: this.player ? "Figures, and the command for sumo-gui" : "Figures" }), make("p", { textContent: figuresOf(row) }));
+    // Paper unfolds nothing.
+    figures.open = "print" in document.documentElement.dataset;
+    this.text = make("div", { className: "text" }, heading, make("p", { textContent: storyOf(row) }), figures, go);
+    if (this.player) {
+      const words = ["closecall", "show", data.runs[column.run[row]].folder, String(column.id[row])];
+      figures.append(make("p", { className: "screen" }, "Play it in sumo-gui: ", make("code", { textContent: words.map(quoted).join(" ") })));
+      this.parts = [this.player.element, this.text];
+      return;
+    }
+    if (drawn.has(row)) {
+      this.picture = make("div", { className: "chart" });
+      this.picture.setAttribute("role", "img");
+      this.picture.setAttribute("aria-label", "Both road users at the worst step");
+    }
+    this.parts = this.picture ? [this.picture, this.text] : [this.text];
+  }
+
+  /** Draws once it is in the page. */
+  start() {
+    this.player?.start();
+    if (this.picture) this.chart = drawScene(this.picture, this.row);
+  }
+
+  dispose() {
+    this.player?.dispose();
+    this.chart?.dispose();
+  }
+}
 
 /** A road user's drawing: rectangle, path, and a nose that shows its heading. */
 function figure([x, y, heading, length, width, ...path]) {
@@ -76,16 +89,26 @@ function figure([x, y, heading, length, width, ...path]) {
 /** Longer ids are shortened in a drawing; the text below it has the whole id. */
 const LONGEST_LABEL = 24;
 
+/** A ring around a road user: solid around the ego, dashed around the foe, as in clips and sumo-gui. */
+function ringOf(points, isEgo) {
+  const middle = [0, 1].map((axis) => points.reduce((sum, point) => sum + point[axis] / points.length, 0));
+  const out = points.map((point) => {
+    const away = Math.hypot(point[0] - middle[0], point[1] - middle[1]) || 1;
+    return [0, 1].map((axis) => point[axis] + ((point[axis] - middle[axis]) * 5) / away);
+  });
+  return { points: out, lineWidth: isEgo ? 3 : 2, lineDash: isEgo ? [] : [6, 4] };
+}
+
 /** The ids: above the upper rectangle and below the lower one. */
 function labels(figures, width) {
   const ends = figures.map(({ corners }) => [Math.min(...corners.map((at) => at[1])), Math.max(...corners.map((at) => at[1]))]);
   const upper = ends[0][0] + ends[0][1] <= ends[1][0] + ends[1][1] ? 0 : 1;
-  return figures.map(({ corners, id, colour }, place) => {
+  return figures.map(({ corners, id }, place) => {
     const text = id.length > LONGEST_LABEL ? `${id.slice(0, LONGEST_LABEL - 1)}…` : id;
     const centre = corners.reduce((sum, at) => sum + at[0] / corners.length, 0);
     const above = place === upper;
     return { type: "text", x: Math.min(Math.max(centre, 40), width - 40), y: above ? ends[place][0] - 4 : ends[place][1] + 4,
-      style: { text, fill: colour, stroke: colours.ground, lineWidth: 3, font: `600 12px ${FONT}`, align: "center",
+      style: { text, fill: colours.ink, stroke: colours.ground, lineWidth: 3, font: `600 12px ${FONT}`, align: "center",
         verticalAlign: above ? "bottom" : "top" } };
   });
 }
@@ -93,7 +116,8 @@ function labels(figures, width) {
 /** Draws both road users at the worst step. */
 function drawScene(element, row) {
   const [, ego, foe] = drawn.get(row);
-  const figures = [{ ...figure(foe), colour: colours.foe, id: foeId(row) }, { ...figure(ego), colour: colours.ego, id: egoId(row) }];
+  const colour = severityColour(column.severity[row]);
+  const figures = [{ ...figure(foe), id: foeId(row), isEgo: false }, { ...figure(ego), id: egoId(row), isEgo: true }];
   // The smaller road user is drawn on top.
   if (foe[3] * foe[4] < ego[3] * ego[4]) figures.reverse();
   const meeting = [column.x[row], column.y[row]];
@@ -106,18 +130,20 @@ function drawScene(element, row) {
     const pixels = 1 / axes.metresPerPixel;
     const on = (list) => list.map((point) => api.coord(point));
     const children = [];
-    for (const { line, width, colour } of figures) {
+    for (const { line, width, isEgo } of figures) {
       if (line.length < 2) continue;
       children.push({ type: "polyline", shape: { points: on(line) },
         style: { fill: null, stroke: colour, opacity: 0.2, lineWidth: width * pixels, lineJoin: "round" } });
       children.push({ type: "polyline", shape: { points: on(line) },
-        style: { fill: null, stroke: colour, lineWidth: 1.5, lineDash: [5, 4] } });
+        style: { fill: null, stroke: colours.ink, lineWidth: 1.5, lineDash: isEgo ? [] : [5, 4] } });
     }
-    for (const { corners, nose, colour } of figures) {
-      children.push({ type: "polygon", shape: { points: on(corners) }, style: { fill: colour, opacity: 0.8, stroke: colours.ink, lineWidth: 1 } });
+    for (const { corners, nose, isEgo } of figures) {
+      children.push({ type: "polygon", shape: { points: on(corners) }, style: { fill: colour, stroke: colours.ink, lineWidth: 1 } });
+      const { points, ...ring } = ringOf(on(corners), isEgo);
+      children.push({ type: "polygon", shape: { points }, style: { fill: null, stroke: colours.ink, ...ring } });
       if (nose.length) children.push({ type: "polygon", shape: { points: on(nose) }, style: { fill: colours.card, opacity: 0.85 } });
     }
-    children.push(...labels(figures.map(({ corners, id, colour }) => ({ corners: on(corners), id, colour })), chart.getWidth()));
+    children.push(...labels(figures.map(({ corners, id }) => ({ corners: on(corners), id })), chart.getWidth()));
     const [x, y] = api.coord(meeting);
     children.push({ type: "circle", shape: { cx: x, cy: y, r: 6 }, style: { fill: null, stroke: colours.meeting, lineWidth: 2.5 } });
     children.push(...scaleBar(axes.metresPerPixel, chart.getHeight()));

@@ -25,7 +25,7 @@ function deed(row, ego, foe) {
   const speeds = ["ego_speed", "foe_speed"].map(value);
   const moves = speeds.map((speed) => speed > MOVES);
   if (parts[0] === null) {
-    const near = value("kind") === 0 ? "the rear of " : "";
+    const near = value("kind") === 0 && manoeuvreOf(row) !== "side_by_side" ? "the rear of " : "";
     return `${moving(ego, speeds[0])} came too close to ${near}${other(foe, speeds[1])}`;
   }
   const did = (past, would) => (collidedByWorst(row) ? past : `was about to ${would}`);
@@ -59,7 +59,9 @@ function whyWords(row) {
 
 function placeWords(row) {
   const spot = conflicts.spots[spotOf(row)];
-  return spot ? `on ${spot} (lane ${laneId(row)})` : `at x ${number(column.x[row], 1)}, y ${number(column.y[row], 1)}`;
+  if (!spot) return `at x ${number(column.x[row], 1)}, y ${number(column.y[row], 1)}`;
+  const street = conflicts.streets[spotOf(row)];
+  return street ? `${spot.startsWith("junction ") ? "at" : "on"} ${street} (${spot}, lane ${laneId(row)})` : `on ${spot} (lane ${laneId(row)})`;
 }
 
 /** What the two did, by its name in the log; other names are shown as they are. */
@@ -71,6 +73,20 @@ const MANOEUVRES = {
   head_on: "They drove towards each other, each on its own path.", person_crossing: "A person was crossing the vehicle’s path.",
   person_along: "A person walked along the vehicle’s path.", person_standing: "A person stood in the vehicle’s way.", object: "An obstacle was in the way.",
 };
+/** The same where one of the two stands: it does not drive. */
+const STANDING = {
+  following: "One was behind the other.", side_by_side: "They were side by side.", head_on: "They faced each other, each on its own way.",
+  overtaking_oncoming: "One was on the lane of the other, against its direction.",
+  left_turn_across: "The way of one turned left across that of the other.", right_turn_across: "The way of one turned right across that of the other.",
+  turn_into: "The way of one turned into the road of the other.", person_along: "A person was in the vehicle’s way, along it.",
+};
+/** What the two of a conflict did, in a sentence. */
+function manoeuvreWords(row) {
+  const manoeuvre = manoeuvreOf(row);
+  const bothMove = ["ego_speed", "foe_speed"].every((name) => column[name][row] > MOVES);
+  return (!bothMove && STANDING[manoeuvre]) || MANOEUVRES[manoeuvre] || `Manoeuvre: ${inWords(manoeuvre)}.`;
+}
+
 /** What happens often at a place, in the same way. */
 const OFTEN = {
   following: "one behind the other", cut_in: "vehicles that cut in", lane_change: "vehicles that change lanes", side_by_side: "vehicles side by side",
@@ -120,8 +136,7 @@ function storyOf(row) {
   const sentences = [`At ${number(value("time"), 1)} s ${placeWords(row)}, ${deed(row, ego, foe)}.`];
   // The kind is that of the angle, whichever parts touch.
   if (value("kind") > 0) sentences.push(`Their paths met at ${Math.round((value("angle") * 180) / Math.PI)}°: a ${KINDS[value("kind")]} conflict.`);
-  const manoeuvre = manoeuvreOf(row);
-  if (manoeuvre) sentences.push(MANOEUVRES[manoeuvre] || `Manoeuvre: ${inWords(manoeuvre)}.`);
+  if (manoeuvreOf(row)) sentences.push(manoeuvreWords(row));
   const causes = causeNames(row);
   if (causes.length) {
     const order = conflicts.causes[column.cause[row]].split(" ");
@@ -172,7 +187,7 @@ function tipOf(row) {
     `${KINDS[value("kind")]}, ${SEVERITIES[value("severity")]}${value("collision") ? ", collision" : ""}`,
     labelWords(row),
     whyWords(row),
-    `${number(value("time"), 1)} s, ${conflicts.spots[spotOf(row)] || "no lane"}`,
+    `${number(value("time"), 1)} s, ${nameOfSpot(spotOf(row))}`,
     `gap ${maybe("gap", 2, "m")}, μ ${maybe("mu", 2, "m")}, margin ${maybe("margin", 2, "m")}`,
     `time to brake ${maybe("ttb", 2, "s")}, crash probability ${maybe("crash_probability", 2, "")}`,
     `TTC ${maybe("ttc", 2, "s")}, DRAC ${maybe("drac", 1, "m/s²")}, PET ${maybe("pet", 2, "s")}`,

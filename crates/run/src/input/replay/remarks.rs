@@ -2,17 +2,23 @@
 
 use super::Replay;
 use closecall::util::limits::said_of_noise;
+use closecall::util::remark::{Remark, RemarkCode};
 
 /// The number of undefined types that a remark names.
 const NAMED_TYPES: usize = 5;
 
 impl Replay {
     /// What may make the result differ from that of the simulation, a line each.
-    pub fn remarks(&self) -> Vec<String> {
+    pub fn remarks(&self) -> Vec<Remark> {
         let speeds = said_of_noise(self.left_out.below_zero);
-        let remarks =
-            [self.undefined_types(), self.unknown_lanes(), self.unknown_routes(), self.other_elements(), speeds];
-        remarks.into_iter().flatten().collect()
+        let found = [
+            (RemarkCode::UndefinedTypes, self.undefined_types()),
+            (RemarkCode::UnknownLanes, self.unknown_lanes()),
+            (RemarkCode::UnknownRoutes, self.unknown_routes()),
+            (RemarkCode::OtherElements, self.other_elements()),
+            (RemarkCode::NoisySpeeds, speeds),
+        ];
+        found.into_iter().filter_map(|(code, text)| Some(Remark::new(code, text?))).collect()
     }
 
     fn other_elements(&self) -> Option<String> {

@@ -36,6 +36,7 @@ use tempfile::TempPath;
 use crate::input::replay::columns_of_fcd;
 use crate::{Error, Result};
 use closecall::traffic::net::Net;
+use closecall::util::remark::{Remark, RemarkCode};
 use fcd_row::FcdWriter;
 pub use format::RecordingFormat;
 pub use inspect::inspect;
@@ -106,6 +107,12 @@ impl Opened {
             Self::Fcd(_) => &[],
             Self::Converted(converted) => &converted.said.doubtful,
         }
+    }
+
+    /// All that had to be assumed.
+    pub fn remarks(&self) -> Vec<Remark> {
+        let remarks = |code, lines: &[String]| lines.iter().map(|line| Remark::new(code, line)).collect::<Vec<_>>();
+        [remarks(RemarkCode::MissingData, self.missing()), remarks(RemarkCode::DoubtfulData, self.doubtful())].concat()
     }
 }
 
