@@ -26,7 +26,7 @@ fn is_auto(out: &Path) -> bool {
 #[derive(Args)]
 #[command(next_help_heading = "Run")]
 pub(super) struct CheckArgs {
-    /// List skipped tests, and the time each part took.
+    /// TOML file with options.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
     #[command(flatten)]

@@ -21,6 +21,7 @@ mod regress;
 mod replay;
 mod report;
 mod run;
+mod run_progress;
 mod selector;
 mod settings;
 mod stats;

@@ -13,6 +13,7 @@ use closecall::util::threads::default_threads;
 use closecall_run::Error as RunError;
 use closecall_run::RunOptions;
 use closecall_run::input::replay::Replay;
+use closecall_run::input::scenario_kind;
 use closecall_run::input::tracks::{self, TrackOptions};
 use closecall_run::output::input_hash::Input;
 use closecall_run::output::record::RunRecord;
@@ -23,8 +24,8 @@ use closecall_run::run::recorded::{Ending, RecordedRun};
 #[derive(Args)]
 #[command(next_help_heading = "Run")]
 pub(crate) struct ReplayArgs {
-    /// Maximum number of threads that test the pairs of a step [default: one per processor]. With 1, no thread reads the steps
-    /// ahead.
+    /// Recording to check: SUMO's fcd-output as XML, CSV or Parquet, SSAM's .trj, Vissim's .fzp, or a table of trajectories;
+    /// also gzipped. Several tables of one time base, such as those of vehicles and of pedestrians, are one recording.
     #[arg(value_name = "FILE", required = true, help_heading = None::<&str>)]
     recordings: Vec<PathBuf>,
     /// Net on which the recording was made. Without one, paths follow no lanes: see --path arc.
@@ -45,8 +46,8 @@ pub(crate) struct ReplayArgs {
     /// The recording was made with SUMO's sublane model (--lateral-resolution), where vehicles move sideways within a lane.
     #[arg(long)]
     sublane: bool,
-    /// Threads at most that test the pairs of a step, as many as these keep busy [default: one per processor]. With 1, no thread
-    /// reads the steps ahead.
+    /// Maximum number of threads that test the pairs of a step [default: one per processor]. With 1, no thread reads the steps
+    /// ahead.
     #[arg(long, value_name = "N", help_heading = "Run", value_parser = clap::value_parser!(u8).range(1..=64))]
     threads: Option<u8>,
     #[command(flatten)]
@@ -68,6 +69,7 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     let folder = arguments.check.claim(&out)?;
     let out = folder.path().to_owned();
     let net = arguments.net.as_deref().map(closecall_run::net::read).transpose()?.map(Arc::new);
+    arguments.recordings.iter().try_for_each(|recording| scenario_kind::check_is_recording(recording))?;
     let opened = tracks::open(&arguments.recordings, &arguments.tracks, net.as_deref(), &mut || false)?;
     let demand = arguments.route_files.iter().cloned().chain(opened.types()).collect::<Vec<_>>();
     let mut replay = Replay::open(opened.recording(), &demand, net.as_deref(), &options.model)?;

@@ -11,7 +11,7 @@ use closecall::options::{step_length, time};
 use closecall::util::threads::default_threads;
 use closecall::util::units::Second;
 use closecall_run::Error;
-use closecall_run::input::sumo_files;
+use closecall_run::input::{scenario_kind, sumo_files};
 use closecall_run::util::input_file;
 
 /// A SUMO scenario and how to run it.
@@ -74,6 +74,7 @@ pub(super) fn request(arguments: &RunArgs) -> Result<RunRequest> {
     if scenario.is_dir() {
         return Err(Error::content(&scenario, "it is a folder, not a SUMO configuration").into());
     }
+    scenario_kind::check_is_scenario(&scenario)?;
     sumo_files::check_are_files(&scenario)?;
     let out = arguments.check.log_folder(&scenario);
     let options = arguments.check.checked(&out)?;

@@ -6,11 +6,13 @@ use std::fmt;
 use ecow::EcoString;
 use serde::{Deserialize, Serialize};
 
+use super::overlaps::Overlaps;
 use super::rank::Rank;
 use crate::util::decimal::Written;
 use closecall::detection::detector::{LeftOut, Work};
 use closecall::detection::kind::{Kind, Severity};
 use closecall::events::{Artefact, Conflict};
+use closecall::traffic::roster::Roster;
 use closecall::util::units::Second;
 
 /// How many conflicts are none of traffic's, by what they are.
@@ -48,6 +50,9 @@ pub struct Summary {
     /// The conflict to look at first; not written to `run.json`.
     #[serde(skip)]
     pub worst: Option<WorstConflict>,
+    /// What the overlaps have in common; not written to `run.json`.
+    #[serde(skip)]
+    pub overlaps: Overlaps,
     /// The share of tests that was skipped; not written to `run.json`.
     #[serde(skip)]
     pub skipped: Skipped,
@@ -187,7 +192,7 @@ impl fmt::Display for Skipped {
 
 impl Summary {
     /// Counts a conflict; an artefact only with `counts_artefacts`.
-    pub fn add(&mut self, conflict: &Conflict, counts_artefacts: bool) {
+    pub fn add(&mut self, conflict: &Conflict, counts_artefacts: bool, roster: &Roster) {
         let Conflict { kind, severity, .. } = *conflict;
         let artefact = conflict.artefact.filter(|_| !counts_artefacts);
         let of = |count: &Count| (count.kind, count.severity, count.artefact);
@@ -195,6 +200,7 @@ impl Summary {
             Ok(known) => self.conflicts[known].count += 1,
             Err(place) => self.conflicts.insert(place, Count { kind, severity, artefact, count: 1 }),
         }
+        self.overlaps.add(conflict, artefact.is_some(), roster);
         if artefact.is_some() {
             return;
         }
@@ -249,8 +255,9 @@ pub fn in_words(set_aside: &SetAside) -> Option<String> {
 }
 
 impl fmt::Display for Summary {
-    /// The table of conflicts, the amount of traffic, and the remarks.
+    /// The remarks, the table of conflicts, what was set aside, and the amount of traffic.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        self.remarks.iter().try_for_each(|remark| writeln!(f, "{remark}"))?;
         write!(f, "{:<10}", "conflicts")?;
         for severity in Severity::ALL.iter().rev() {
             write!(f, "{:>10}", severity.name())?;
@@ -266,27 +273,17 @@ impl fmt::Display for Summary {
         if let Some(set_aside) = self.set_aside_in_words() {
             writeln!(f, "{set_aside}")?;
         }
-        writeln!(
-            f,
-            "risk index {:.2}: the sum of all crash probabilities, to compare plans with; not a number of crashes",
-            self.risk_index
-        )?;
+        writeln!(f, "{}", self.overlaps.in_words(self.collisions_sumo))?;
         let Exposure { vehicles, persons, vehicle_kilometres, .. } = self.exposure;
-        write!(f, "collisions {}", self.collisions)?;
-        match self.collisions_sumo {
-            Some(SumoCollisions { reported, in_conflict }) => {
-                writeln!(f, "; SUMO reports {reported}, {in_conflict} of them in a conflict (docs/log.md says why)")?;
-            }
-            None => writeln!(f)?,
-        }
         writeln!(
             f,
-            "{vehicles} vehicles, {persons} persons, {vehicle_kilometres:.1} vehicle-km, {} steps from {} to {} s",
+            "{vehicles} vehicles, {persons} persons, {vehicle_kilometres:.1} vehicle-km, {} steps from {} to {} s; risk index \
+             {:.2} (not a number of crashes)",
             self.steps,
             Written(self.begin),
-            Written(self.end)
-        )?;
-        self.remarks.iter().try_for_each(|remark| writeln!(f, "{remark}"))
+            Written(self.end),
+            self.risk_index
+        )
     }
 }
 

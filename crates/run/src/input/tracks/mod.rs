@@ -36,6 +36,7 @@ use tempfile::TempPath;
 use crate::input::replay::columns_of_fcd;
 use crate::{Error, Result};
 use closecall::traffic::net::Net;
+pub(crate) use detect::is_markup;
 use fcd_row::FcdWriter;
 pub use format::RecordingFormat;
 pub use inspect::inspect;
