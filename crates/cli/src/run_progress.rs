@@ -123,6 +123,7 @@ fn step_length(args: &[String]) -> Option<f64> {
 fn in_words(time: Duration) -> String {
     let seconds = time.as_secs_f64();
     match seconds {
+        ..10.0 => format!("{seconds:.1} s"),
         ..90.0 => format!("{seconds:.0} s"),
         ..5400.0 => format!("{:.0} min", seconds / 60.0),
         _ => format!("{:.1} h", seconds / 3600.0),
@@ -134,9 +135,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_time_is_said_in_two_digits() {
+    fn a_time_is_said_with_two_digits() {
         let said = [4.4, 89.0, 600.0, 9000.0].map(|seconds| in_words(Duration::from_secs_f64(seconds)));
-        assert_eq!(said, ["4 s", "89 s", "10 min", "2.5 h"]);
+        assert_eq!(said, ["4.4 s", "89 s", "10 min", "2.5 h"]);
     }
 
     #[test]

@@ -1,12 +1,12 @@
 //! What a file of SUMO is, by its first element, and what to pass where it is passed as a scenario.
 
+use std::io::BufRead;
 use std::path::{Path, PathBuf};
 
 use quick_xml::Reader;
 use quick_xml::events::Event;
 
 use super::sumo_files::files_of;
-use super::tracks::is_markup;
 use crate::util::input_file::ElementSource;
 use crate::{Error, Result};
 
@@ -93,11 +93,13 @@ fn refuse(path: &Path, why: &str, is_wrong: impl FnOnce(SumoFile) -> bool) -> Re
 
 /// The name of the first element of an XML file.
 fn first_element(path: &Path) -> Option<String> {
+    let mut source = ElementSource::open(path).ok()?;
     // A table would be read to its end in search of an element.
-    if !is_markup(path).ok()? {
+    let text = String::from_utf8_lossy(source.fill_buf().ok()?).into_owned();
+    if !text.trim_start_matches('\u{feff}').trim_start().starts_with('<') {
         return None;
     }
-    let mut reader = Reader::from_reader(ElementSource::open(path).ok()?);
+    let mut reader = Reader::from_reader(source);
     let mut buffer = Vec::new();
     loop {
         buffer.clear();

@@ -4,7 +4,16 @@ use closecall::events::{Artefact, Conflict};
 use closecall::traffic::profile::Category;
 use closecall::traffic::roster::Roster;
 
-use super::summary::SumoCollisions;
+use serde::{Deserialize, Serialize};
+
+/// The collisions that SUMO itself reported.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SumoCollisions {
+    /// The pairs that SUMO reported.
+    pub reported: u64,
+    /// The conflicts whose pair SUMO reported while they were open.
+    pub in_conflict: u64,
+}
 
 /// What the rectangles that overlapped have in common.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -6,14 +6,14 @@ use std::fmt;
 use ecow::EcoString;
 use serde::{Deserialize, Serialize};
 
-use super::overlaps::Overlaps;
+use super::overlaps::{Overlaps, SumoCollisions};
 use super::rank::Rank;
 use crate::util::decimal::Written;
 use closecall::detection::detector::{LeftOut, Work};
 use closecall::detection::kind::{Kind, Severity};
 use closecall::events::{Artefact, Conflict};
 use closecall::traffic::roster::Roster;
-use closecall::util::units::Second;
+use closecall::util::units::{Second, counted};
 
 /// How many conflicts are none of traffic's, by what they are.
 pub type SetAside = BTreeMap<String, u64>;
@@ -76,15 +76,6 @@ pub struct Count {
     pub artefact: Option<Artefact>,
     /// The number of conflicts.
     pub count: u64,
-}
-
-/// The collisions that SUMO itself reported.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct SumoCollisions {
-    /// The pairs that SUMO reported.
-    pub reported: u64,
-    /// The conflicts whose pair SUMO reported while they were open.
-    pub in_conflict: u64,
 }
 
 /// The amount of traffic in a run.
@@ -277,9 +268,11 @@ impl fmt::Display for Summary {
         let Exposure { vehicles, persons, vehicle_kilometres, .. } = self.exposure;
         writeln!(
             f,
-            "{vehicles} vehicles, {persons} persons, {vehicle_kilometres:.1} vehicle-km, {} steps from {} to {} s; risk index \
+            "{}, {}, {vehicle_kilometres:.1} vehicle-km, {} from {} to {} s; risk index \
              {:.2} (not a number of crashes)",
-            self.steps,
+            counted(vehicles, "vehicle"),
+            counted(persons, "person"),
+            counted(self.steps, "step"),
             Written(self.begin),
             Written(self.end),
             self.risk_index

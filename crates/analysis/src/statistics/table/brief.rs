@@ -1,9 +1,9 @@
 //! The statistics that fit a screen of 80 columns and 40 lines, and the commands that show more.
 
 use super::cells::{Cell, Table};
-use super::contents::{extremes, quantiles, rates, spots, traffic, worst};
+use super::contents::{quantiles, rates, spots, traffic, worst};
 use super::text::text;
-use crate::statistics::Statistics;
+use crate::statistics::{Crashes, Extrapolation, Statistics};
 
 /// The columns of a screen.
 const WIDTH: usize = 80;
@@ -38,13 +38,13 @@ pub fn brief(statistics: &Statistics, logs: &str) -> String {
         picked(quantiles(&groups[..groups.len().min(1)]), QUANTILES),
         picked(spots(title, &places[..places.len().min(ROWS)]), SPOTS),
         worst,
-        picked_extremes(extremes(&statistics.extremes)),
+        crashes(&statistics.extremes),
     ];
     tables.retain(|table| !table.rows.is_empty() || (table.columns.is_empty() && !table.notes.is_empty()));
     tables.iter_mut().for_each(|table| table.notes = table.notes.iter().map(|note| wrapped(note)).collect());
     let show = statistics.worst.first().and_then(|worst| worst.command.as_ref());
     let show = show.map(|command| format!("the worst: {command}\n")).unwrap_or_default();
-    format!("{}\n{show}all tables: closecall stats {logs} --all\non a map: closecall report {logs}\n", text(&tables))
+    format!("{}{show}all tables: closecall stats {logs} --all\non a map: closecall report {logs}\n", text(&tables))
 }
 
 /// The table with these columns alone, and with short ids.
@@ -61,14 +61,17 @@ fn picked(table: Table, columns: &[(&str, usize)]) -> Table {
     }
 }
 
-/// The frequencies, each a line.
-fn picked_extremes(table: Table) -> Table {
-    let line = |row: &Vec<Cell>| {
-        let cells = row.iter().map(Cell::rounded).collect::<Vec<_>>();
-        format!("crashes per hour, extrapolated from {}: {} ({} to {})", cells[0], cells[2], cells[3], cells[4])
+/// The frequencies, each a line, and those that are refused.
+fn crashes(extremes: &[Extrapolation]) -> Table {
+    let line = |found: &Extrapolation| {
+        let Crashes { per_hour, low, high, .. } = found.crashes?;
+        let [value, low, high] = [per_hour, low, high].map(|it| Cell::Number(it).rounded());
+        Some(format!("crashes per hour, extrapolated from {}: {value} ({low} to {high})", found.quantity))
     };
-    let lines = table.rows.iter().map(line).chain(table.notes.clone());
-    Table { title: table.title, notes: lines.collect(), ..Table::default() }
+    let refused = extremes.iter().filter(|found| found.refused.is_some()).map(|found| found.quantity);
+    let refused = refused.collect::<Vec<_>>().join(", ");
+    let refused = (!refused.is_empty()).then(|| format!("no crashes extrapolated from {refused}: --all says why"));
+    Table { notes: extremes.iter().filter_map(line).chain(refused).collect(), ..Table::default() }
 }
 
 fn short(cell: &Cell) -> Cell {

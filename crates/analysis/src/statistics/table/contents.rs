@@ -248,7 +248,7 @@ pub(super) fn worst(worst: &[RankedConflict]) -> Table {
     }
 }
 
-pub(super) fn extremes(extremes: &[Extrapolation]) -> Table {
+fn extremes(extremes: &[Extrapolation]) -> Table {
     let row = |found: &Extrapolation| {
         let of = |get: fn(&crate::statistics::Crashes) -> f64| Cell::maybe(found.crashes.as_ref().map(get));
         vec![

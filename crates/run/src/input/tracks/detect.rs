@@ -32,7 +32,7 @@ pub(super) fn format_of(path: &Path) -> Result<RecordingFormat> {
 }
 
 /// Whether a file is XML.
-pub(crate) fn is_markup(path: &Path) -> Result<bool> {
+pub(super) fn is_markup(path: &Path) -> Result<bool> {
     first_bytes(path).map(|first| begins_markup(&String::from_utf8_lossy(&first)))
 }
 

@@ -36,7 +36,6 @@ use tempfile::TempPath;
 use crate::input::replay::columns_of_fcd;
 use crate::{Error, Result};
 use closecall::traffic::net::Net;
-pub(crate) use detect::is_markup;
 use fcd_row::FcdWriter;
 pub use format::RecordingFormat;
 pub use inspect::inspect;
