@@ -94,11 +94,12 @@ impl Passed {
 /// fastest. Clips of thousands of runs are made only if they are asked for.
 const DEFAULTS: [(&str, &str); 2] = [("threads", "1"), ("log-clips", "none")];
 /// Arguments of `closecall run` that a sweep sets itself or has no use for.
-const OWN: [&str; 12] = [
+const OWN: [&str; 13] = [
     "scenario",
     "configuration_file",
     "gui",
     "label",
+    "pause_at",
     "quit_on_end",
     "out",
     "force",
