@@ -61,17 +61,20 @@ fn picked(table: Table, columns: &[(&str, usize)]) -> Table {
     }
 }
 
-/// The frequencies, each a line, and those that are refused.
+/// The frequencies, and those that are refused, in a sentence.
 fn crashes(extremes: &[Extrapolation]) -> Table {
-    let line = |found: &Extrapolation| {
+    let told = |found: &Extrapolation| {
         let Crashes { per_hour, low, high, .. } = found.crashes?;
         let [value, low, high] = [per_hour, low, high].map(|it| Cell::Number(it).rounded());
-        Some(format!("crashes per hour, extrapolated from {}: {value} ({low} to {high})", found.quantity))
+        Some(format!("{value} ({low} to {high}) from {}", found.quantity))
     };
+    let told = extremes.iter().filter_map(told).collect::<Vec<_>>().join(", ");
+    let told = (!told.is_empty()).then(|| format!("crashes per hour, extrapolated: {told}"));
     let refused = extremes.iter().filter(|found| found.refused.is_some()).map(|found| found.quantity);
     let refused = refused.collect::<Vec<_>>().join(", ");
-    let refused = (!refused.is_empty()).then(|| format!("no crashes extrapolated from {refused}: --all says why"));
-    Table { notes: extremes.iter().filter_map(line).chain(refused).collect(), ..Table::default() }
+    let refused = (!refused.is_empty()).then(|| format!("no crashes extrapolated from {refused} (--all says why)"));
+    let sentence = told.into_iter().chain(refused).collect::<Vec<_>>().join("; ");
+    Table { notes: Some(sentence).filter(|it| !it.is_empty()).into_iter().collect(), ..Table::default() }
 }
 
 fn short(cell: &Cell) -> Cell {
