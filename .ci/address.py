@@ -1,4 +1,4 @@
-"""Fills in the address of the repository wherever OWNER stands for it.
+"""Fills in the address of the repository where lines begin with `# released: ` and OWNER stands for it.
 
     python3 .ci/address.py OWNER/NAME [REF]
 
@@ -13,12 +13,15 @@ import sys
 from pathlib import Path
 
 FILES = ["pyproject.toml", "Cargo.toml", "CITATION.cff", "mkdocs.yml", "README.md"]
+RELEASED = "# released: "
+"""What these lines begin with before, so that nothing names an address that leads nowhere."""
 RELATIVE = re.compile(r"(!?)(\[[^\]]*\])\((?![a-z]+:|#)([^)\s]+)\)")
 
 
 def filled(text: str, repository: str) -> str:
     """The text with the address of the repository."""
     owner, name = repository.split("/")
+    text = text.replace(RELEASED, "")
     site = f"{owner}.github.io/{name}"
     return text.replace("OWNER.github.io/closecall", site).replace("OWNER/closecall", repository)
 

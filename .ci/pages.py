@@ -1,6 +1,7 @@
 """What MkDocs does besides: pages at the top of the repository become pages of the site, and links find their way.
 
-The pages are written for GitHub. A link to a file that is no page of the site goes to the repository.
+The pages are written for GitHub. A link to a file that is no page of the site goes to the repository; before the first
+release, whose address is filled in (`.ci/address.py`), it is text alone.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ TOP = {
 }
 
 LINK = re.compile(r"(?<=\]\()(?![a-z]+:|#)([^)#\s]+)")
+WHOLE_LINK = re.compile(r"(?<!!)\[([^\]]*)\]\((?![a-z]+:|#)([^)#\s]+)[^)]*\)")
 
 
 def on_files(files: Any, config: Any) -> Any:
@@ -37,11 +39,16 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
     name = page.file.src_uri
     source = next((top for top, own in TOP.items() if own == name), f"docs/{name}")
 
-    def where(link: re.Match[str]) -> str:
-        target = posixpath.normpath(posixpath.join(posixpath.dirname(source), link[1]))
-        own = TOP.get(target, target.removeprefix("docs/"))
-        if (target in TOP or target.startswith("docs/")) and files.get_file_from_path(own):
-            return posixpath.relpath(own, posixpath.dirname(name) or ".")
-        return f"{config.repo_url}/blob/main/{target}"
+    def on_site(target: str) -> str | None:
+        full = posixpath.normpath(posixpath.join(posixpath.dirname(source), target))
+        own = TOP.get(full, full.removeprefix("docs/"))
+        is_page = (full in TOP or full.startswith("docs/")) and files.get_file_from_path(own)
+        return posixpath.relpath(own, posixpath.dirname(name) or ".") if is_page else None
 
+    def where(link: re.Match[str]) -> str:
+        in_repository = posixpath.normpath(posixpath.join(posixpath.dirname(source), link[1]))
+        return on_site(link[1]) or f"{config.repo_url}/blob/main/{in_repository}"
+
+    if not config.repo_url:
+        markdown = WHOLE_LINK.sub(lambda link: link[0] if on_site(link[2]) else link[1], markdown)
     return LINK.sub(where, markdown)

@@ -14,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 HERE = Path(__file__).parent
 RANK = {"critical": 2, "serious": 1, "caution": 0}
@@ -43,6 +44,9 @@ def shoot(config: Path, spot: tuple[float, float, float] | None) -> None:
     checker = Checker(sumo)
     step, busiest = sumo.simulation.getDeltaT(), 0
     picture = str(config.with_suffix(".png"))
+    if spot is not None:
+        # Rings are as large as the view was when they were painted.
+        look_at(sumo, spot[1], spot[2])
     while sumo.simulation.getMinExpectedNumber() > 0:
         sumo.simulationStep()
         checker.step()
@@ -55,12 +59,17 @@ def shoot(config: Path, spot: tuple[float, float, float] | None) -> None:
             x, y = sumo.vehicle.getPosition(vehicles[0])
         else:
             continue
-        sumo.gui.setBoundary("View #0", x - 50, y - 30, x + 50, y + 30)
+        look_at(sumo, x, y)
         sumo.gui.screenshot("View #0", picture)
         sumo.simulationStep()
         if spot is not None:
             break
     _sumo.close(gui=True)
+
+
+def look_at(sumo: Any, x: float, y: float) -> None:
+    """Show a place and 50 m around it."""
+    sumo.gui.setBoundary("View #0", x - 50, y - 30, x + 50, y + 30)
 
 
 def draw_clip() -> None:
@@ -85,7 +94,8 @@ def main() -> None:
         words = sys.argv[2:]
         shoot(Path(words[0]), tuple(map(float, words[1:])) if words[1:] else None)  # type: ignore[arg-type]
         return
-    for name in sys.argv[1:] or sorted(path.name for path in HERE.iterdir() if path.is_dir()):
+    named = sorted(path.parent.name for path in HERE.glob("*/*.sumocfg") if path.stem == path.parent.name)
+    for name in sys.argv[1:] or named:
         config = HERE / name / f"{name}.sumocfg"
         spot = find_spot(config)
         command = [sys.executable, __file__, "--shoot", str(config), *map(str, spot or ())]

@@ -85,7 +85,7 @@ impl State {
             Err(error) => return self.abandon(error),
         }
         if let Some(painter) = &mut self.painter {
-            painter.paint(py, &self.recorded.run)?;
+            painter.paint(py, &self.recorded.run, None)?;
         }
         Ok(Stepped { goes_on: true, warning })
     }

@@ -32,15 +32,22 @@ impl Painter {
         Ok(Self { module: module.unbind(), painter: painter.unbind() })
     }
 
-    /// Paints the road users in conflict and restores those that no longer are.
-    pub fn paint(&mut self, py: Python, run: &Run) -> PyResult<()> {
+    /// Paints the road users in conflict and restores those that no longer are; returns how severe the worst is. It halts
+    /// at those that become as severe as `pause_at`.
+    pub fn paint(&mut self, py: Python, run: &Run, pause_at: Option<Severity>) -> PyResult<Option<Severity>> {
         let module = self.module.bind(py);
         let pairs = PyList::empty(py);
+        let mut worst = None;
         for alarm in run.alarms() {
+            worst = worst.max(Some(alarm.severity));
             pairs.append(pair(module, run, &alarm)?)?;
         }
-        self.painter.bind(py).call_method1("paint", (pairs,))?;
-        Ok(())
+        let painter = self.painter.bind(py);
+        painter.call_method1("paint", (&pairs,))?;
+        if let Some(least) = pause_at {
+            painter.call_method1("halt", (pairs, least.name()))?;
+        }
+        Ok(worst)
     }
 
     /// Removes all that was painted.

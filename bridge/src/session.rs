@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use closecall::Severity;
 use closecall::util::threads::Helper;
 use closecall_cli::RunRequest;
 use closecall_cli::progress::Progress;
@@ -16,6 +17,8 @@ use crate::sumo::Source;
 
 /// The least time for which sumo-gui shows a step: libsumo's own does not wait.
 const SHOWN: Duration = Duration::from_millis(50);
+/// How many times slower than in reality a step with a serious or critical conflict goes by.
+const SLOWER: [(Severity, f64); 2] = [(Severity::Serious, 1.0), (Severity::Critical, 2.0)];
 /// With fewer road users than this, handing a step to another thread takes about as long as the step.
 const WORTH_A_THREAD: usize = 10;
 /// SUMO's times are multiples of this, in s.
@@ -175,8 +178,9 @@ impl<'a, 'py> Session<'a, 'py> {
             since = Instant::now();
         }
         if let Some(painter) = &mut self.painter {
-            painter.paint(py, run)?;
-            py.detach(|| std::thread::sleep(SHOWN.saturating_sub(started.elapsed())));
+            let worst = painter.paint(py, run, self.request.gui.and_then(|gui| gui.pause_at))?;
+            let shown = shown(worst, self.step_length);
+            py.detach(|| std::thread::sleep(shown.saturating_sub(started.elapsed())));
             self.spent.add(TimedPart::Painting, &mut since);
         }
         Ok(self.simulation.goes_on()?)
@@ -210,6 +214,12 @@ fn finish(run: &mut Run) -> Finished {
     let mut since = Instant::now();
     run.finish_step(|part| spent.add(TimedPart::Check(part), &mut since))?;
     Ok(spent)
+}
+
+/// For how long sumo-gui shows a step whose worst conflict is this severe: a critical one is over in a second or two.
+fn shown(worst: Option<Severity>, step_length: f64) -> Duration {
+    let slower = SLOWER.into_iter().find(|(severity, _)| Some(*severity) == worst);
+    slower.map_or(SHOWN, |(_, times)| SHOWN.max(Duration::from_secs_f64(times * step_length)))
 }
 
 /// Whether another thread, on a processor of its own, may finish a step.

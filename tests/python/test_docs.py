@@ -106,10 +106,14 @@ def test_a_page_does_what_it_says(page: str, once: Once, tmp_path: Path) -> None
 def test_a_release_has_no_placeholder_and_no_relative_link(tmp_path: Path) -> None:
     for name in ("pyproject.toml", "Cargo.toml", "CITATION.cff", "mkdocs.yml", "README.md"):
         shutil.copy(ROOT / name, tmp_path / name)
+    for file in tmp_path.iterdir():
+        lines = file.read_text(encoding="utf-8").splitlines()
+        assert not [line for line in lines if "OWNER" in line and not line.startswith("# released: ")]
     command = [sys.executable, str(ROOT / ".ci/address.py"), "somebody/near-misses", "v0.1.0"]
     subprocess.run(command, cwd=tmp_path, check=True)
     for file in tmp_path.iterdir():
-        assert "OWNER/" not in file.read_text(encoding="utf-8")
+        text = file.read_text(encoding="utf-8")
+        assert "OWNER/" not in text and "# released" not in text
     assert "github.com/somebody/near-misses" in (tmp_path / "pyproject.toml").read_text(encoding="utf-8")
     assert not re.search(r"\]\((?!https?://)", (tmp_path / "README.md").read_text(encoding="utf-8"))
 

@@ -23,6 +23,7 @@ def test_a_conflict_comes_back_in_a_folder_of_its_own(scenario: Copy, closecall_
         "README.md",
         "closecall.toml",
         "conflict.sumocfg",
+        "expected",
         "left_turn.net.xml",
         "state.xml.gz",
         "test_conflict.py",
@@ -30,6 +31,8 @@ def test_a_conflict_comes_back_in_a_folder_of_its_own(scenario: Copy, closecall_
     assert (out / "README.md").read_text().count("\n") == 6
     for path in config.parent.iterdir():
         path.unlink()
+    compared = closecall("regress", out)
+    assert compared.returncode == 0 and "byte for byte the same" in compared.stdout, compared.stdout + compared.stderr
     check = runpy.run_path(str(out / "test_conflict.py"))["test_the_conflict_is_still_there"]
     check(lambda name: closecall_scenario(out / name))
     assert f"pytest.approx({float(wanted['margin'])!r}, abs=1e-6)" in (out / "test_conflict.py").read_text()
@@ -53,6 +56,7 @@ def test_a_scenario_begins_where_the_run_did_if_no_state_leads_there(scenario: C
         "README.md",
         "closecall.toml",
         "conflict.sumocfg",
+        "expected",
         "pedestrian.net.xml",
         "pedestrian.rou.xml",
         "test_conflict.py",

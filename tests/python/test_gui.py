@@ -20,8 +20,6 @@ from PIL import Image
 Copy = Callable[[str], Path]
 
 SEVERITIES = {"caution": (0x6F, 0xA8, 0xDC), "serious": (0xFF, 0xAB, 0x40), "critical": (0xFF, 0x5C, 0x6C)}
-WHITE = (255, 255, 255)
-"""The colour of the first pair's rings."""
 ROAD = (70, 75, 81)
 
 # A package of the system, which .ci/run installs.
@@ -86,6 +84,18 @@ def pixels_like(picture: Path, colour: tuple[int, int, int], within: int = 25) -
     return int((np.abs(pixels - colour).max(-1) < within).sum())
 
 
+def rings(picture: Path, within: int = 25) -> int:
+    """The pixels of rings and lines, which have the colours of the severities."""
+    return sum(pixels_like(picture, colour, within) for colour in SEVERITIES.values())
+
+
+def legend(picture: Path, colour: tuple[int, int, int]) -> int:
+    """The pixels of the legend, in the upper left corner, of about this colour."""
+    pixels = np.asarray(Image.open(picture).convert("RGB")).astype(int)
+    pixels = pixels[: pixels.shape[0] // 2, : pixels.shape[1] // 4]
+    return int((np.abs(pixels - colour).max(-1) < 25).sum())
+
+
 def path_colour(colour: tuple[int, int, int]) -> tuple[int, int, int]:
     """A severity's colour as the ego's path has it, mixed with the road's."""
     share = 0.6
@@ -115,11 +125,10 @@ def test_a_conflict_is_painted_while_it_lasts(kind: str, scenario: Copy, tmp_pat
     for state in seen["states"]:
         if not state["painted"]:
             assert all(state["colours"][vehicle] == seen["before"][vehicle] for vehicle in state["colours"])
-    assert sum(pixels_like(near, colour) for colour in SEVERITIES.values()) > 20
     assert sum(pixels_like(near, path_colour(colour), 6) for colour in SEVERITIES.values()) > 20
-    assert pixels_like(near, WHITE) > 400
+    assert rings(near) > 400
     # 3 km across, where a car is a third of a pixel wide.
-    assert pixels_like(far, WHITE, 60) > 60
+    assert rings(far, 60) > 60
     if pictures := os.environ.get("CLOSECALL_PICTURES"):
         shutil.copy(near, pictures)
         shutil.copy(far, pictures)
@@ -137,6 +146,16 @@ def test_the_command_shows_the_run_and_logs_the_same(scenario: Copy, tmp_path: P
     assert rows(tmp_path / "shown" / "conflicts.csv") == rows(tmp_path / "unseen" / "conflicts.csv")
 
 
+@needs_xvfb
+@pytest.mark.usefixtures("display")
+def test_a_run_halts_once_at_each_severe_conflict(scenario: Copy, tmp_path: Path) -> None:
+    done = python(HALT, scenario("side"), tmp_path / "log")
+    assert done.returncode in (0, -signal.SIGALRM), done.stderr
+    halts, most = json.loads(done.stdout.splitlines()[-1])
+    # Without a terminal it goes on after a while; the only conflict is no more than a caution.
+    assert (halts, most) == (1, 0)
+
+
 def test_a_missing_display_is_reported(scenario: Copy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("DISPLAY", raising=False)
     config = scenario("side")
@@ -145,6 +164,41 @@ def test_a_missing_display_is_reported(scenario: Copy, tmp_path: Path, monkeypat
         done = closecall(*words)
         assert (done.returncode, done.stderr.count("\n")) == (2, 1)
         assert "needs a display" in done.stderr
+
+
+# Runs in sumo-gui, and counts the halts at cautions, and at more.
+HALT = """
+import json, signal, sys, time
+from closecall import _paint, _sumo, Checker
+
+sumo = _sumo.start(["-c", sys.argv[1], "--no-warnings"], gui=True)
+checker = Checker(sumo, paint=False)
+_paint.HALTS = 0.0
+halts = {"caution": 0, "critical": 0}
+painters = {least: _paint.Painter(sumo, json.loads(%r)) for least in halts}
+wait = _paint.time.sleep
+
+
+def paint(least):
+    def halted(seconds):
+        halts[least] += seconds == 0.0
+        wait(seconds)
+
+    _paint.time.sleep = halted
+    user = lambda name: _paint.User(name, "vehicle", 5.0, 1.8, False, [])
+    pairs = [_paint.Pair(user(a.ego), user(a.foe), a.severity, a.kind, (a.x, a.y), None) for a in checker.active]
+    painters[least].halt(pairs, least)
+
+
+while sumo.simulation.getMinExpectedNumber() > 0:
+    sumo.simulationStep()
+    checker.step()
+    for least in halts:
+        paint(least)
+print(json.dumps(list(halts.values())), flush=True)
+signal.alarm(2)
+_sumo.close(gui=True)
+""" % json.dumps({name: list(colour) for name, colour in SEVERITIES.items()})
 
 
 # Plays a clip, takes a picture at the worst step, and says where the two were then.
@@ -205,8 +259,8 @@ def test_show_plays_a_clip_where_the_conflict_was(scenario: Copy, tmp_path: Path
     for user, place in zip(("ego", "foe"), seen["seen"]):
         assert place == pytest.approx((float(row[f"{user}_x"]), float(row[f"{user}_y"])), abs=0.02)
     assert seen["left"] == []
-    assert sum(pixels_like(shot, colour) for colour in SEVERITIES.values()) > 20
-    assert pixels_like(shot, WHITE) > 400
+    assert rings(shot) > 400
+    assert all(legend(shot, colour) > 60 for colour in SEVERITIES.values())
     if pictures := os.environ.get("CLOSECALL_PICTURES"):
         shutil.copy(shot, pictures)
     done = closecall_apart("show", log, "--worst", "1", "--quit-on-end")

@@ -164,7 +164,7 @@ def test_the_worst_conflicts_come_first_in_sorted_rows(plans: Path) -> None:
     assert first["command"] == f"closecall show {first['folder']} {first['id']}"
     mild = next(one for one in found if one["severity"] == "caution")
     assert f"--seed {mild['seed']} " in mild["command"] and "sumo-gui -c " in mild["command"]
-    assert "--breakpoints" in mild["command"] and f'x="{mild["x"]:.1f}"' in mild["command"]
+    assert "--breakpoints" in mild["command"] and "\n" not in mild["command"] and "$" not in mild["command"]
 
 
 def test_intervals_over_seeds_follow_students_t(plans: Path) -> None:

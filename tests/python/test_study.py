@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import signal
 import statistics
 from pathlib import Path
@@ -39,7 +40,14 @@ def done(once: Once) -> Path:
 
     def fill(out: Path) -> None:
         result = closecall("study", LEFT_TURN, "--out", out, *WORDS, *SUMO)
-        assert (result.returncode, result.stderr) == (0, "")
+        assert result.returncode == 0
+        cost, first, *_ = result.stderr.splitlines()
+        assert re.fullmatch(r"closecall: \d+ runs; \d+ at the same time; the first tells how long they take", cost), (
+            cost
+        )
+        assert re.fullmatch(r"closecall: the first run took [\d.]+ s; all others will take about [\d.]+ s", first), (
+            first
+        )
         (out / "said").write_text(result.stdout)
 
     return once("study", fill)
@@ -117,7 +125,7 @@ def test_the_same_command_continues_a_study(tmp_path: Path) -> None:
     assert process.returncode == 130 and "of 6 runs; repeat the command to continue" in stderr
     assert len(first) < 6 and not (tmp_path / "study.md").exists()
     again = closecall(*words, "--end", "60", *SUMO)
-    assert (again.returncode, again.stderr) == (0, "")
+    assert again.returncode == 0 and f", {len(first)} more are done; " in again.stderr, again.stderr
     assert len(logs()) == 6 and first.items() <= logs().items()
     assert (tmp_path / "study.md").exists()
 

@@ -1,13 +1,16 @@
 """Conflicts in sumo-gui, while they last.
 
-Each of a pair has the colour of the worst severity of its conflicts, and a ring in a colour of the pair: thick around
-the ego, thin around the foe. A line leads from each to the conflict point, and their predicted paths lie on the road.
-Rings and lines are at least a fixed share of the view, so that they are seen at any zoom.
+Each of a pair has the colour of the worst severity of its conflicts, and a ring in the colour of this one: thick around
+the ego, thin around the foe, with dark edges, so that it is seen among cars of any colour. A line leads from the front of
+each to the conflict point, and their predicted paths lie on the road. Rings and lines are at least a fixed share of the
+view, so that they are seen at any zoom.
 """
 
 from __future__ import annotations
 
 import math
+import sys
+import time
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -17,8 +20,10 @@ Colour = tuple[int, int, int, int]
 POLYGON_TYPE = "closecall"
 """The type of all polygons that are painted."""
 
-PAIR_COLOURS: list[Colour] = [(255, 255, 255, 255), (240, 228, 66, 255), (0, 158, 115, 255), (204, 121, 167, 255)]
-"""Of Okabe and Ito's colours, which every eye tells apart, those that no severity has, and white."""
+EDGE: Colour = (27, 31, 35, 255)
+"""Of rings and lines: darker than the road."""
+PALE: Colour = (215, 219, 224, 255)
+"""The rings in the legend that stand for any severity."""
 
 RING_MARGIN = 2.0
 """The distance between a road user and its ring, in m."""
@@ -30,8 +35,8 @@ LINE_OF_VIEW = 0.0015
 """The least width of a line, as a share of the view's width."""
 THIN = 0.25
 """The width of a line and of the foe's ring, in m; the ego's ring is four times as wide."""
-LABEL_ABOVE = 7.0
-"""How far above the conflict point its label is, in m."""
+LABEL_OF_VIEW = 0.02
+"""How far above both rings the label is, as a share of the view's width."""
 ROAD: Colour = (70, 75, 81, 255)
 """As in gui-settings.xml."""
 PATH_SHARE = {"ego": 0.6, "foe": 0.35}
@@ -44,8 +49,16 @@ ABOVE_VEHICLES = 1000
 
 AROUND = 60.0
 """Half the width of the view at the begin, in m."""
-PLACE_OF_LEGEND = (0.05, 0.06, 0.08)
-"""From the left and the top, and from one to the next, as shares of the view."""
+LEGEND_WIDTH = 0.13
+"""The width of the legend, as a share of the view's width."""
+LEGEND_ROW = 0.065
+"""The height of one of its rows, as a share of the view's height; other lengths in the legend are shares of a row."""
+LEGEND_MARGIN = 0.4
+LEGEND_RING = 0.28
+SHOWN_WITHIN = 1.0
+"""How long sumo-gui may take to draw a new view, in s."""
+HALTS = 3.0
+"""How long a run halts where Enter cannot be pressed, in s."""
 
 
 class User(NamedTuple):
@@ -75,7 +88,6 @@ class Shown:
     """What is drawn of a pair."""
 
     number: int
-    colour: Colour
     polygons: dict[str, tuple[Colour, float]] = field(default_factory=dict)
 
 
@@ -95,7 +107,8 @@ class Painter:
         self.label, self.own_view = label, own_view
         self.shown: dict[tuple[str, str], Shown] = {}
         self.former: dict[tuple[str, str], Colour] = {}
-        self.legend: list[str] = []
+        self.legend: list[tuple[Any, str]] = []
+        self.halted: set[tuple[str, str]] = set()
         self.last_number = 0
         self.view = self._view()
         self.first_view: Any = None
@@ -123,9 +136,37 @@ class Painter:
     def clear(self) -> None:
         """Remove all that was painted."""
         self.paint([])
-        for poi in self.legend:
-            self.sumo.poi.remove(poi)
+        for domain, name in self.legend:
+            domain.remove(name)
         self.legend = []
+
+    def halt(self, pairs: list[Pair], least: str) -> None:
+        """Halt at the conflicts that are this severe for the first time, in their view, until the user presses Enter."""
+        rank = list(self.colours).index
+        severe = [pair for pair in pairs if rank(pair.severity) >= rank(least)]
+        new = [pair for pair in severe if (pair.ego.id, pair.foe.id) not in self.halted]
+        self.halted = {(pair.ego.id, pair.foe.id) for pair in severe}
+        if not new:
+            return
+        worst = max(new, key=lambda pair: rank(pair.severity))
+        self._show(worst.at)
+        self.is_shown = True
+        # Rings and legend depend on the view.
+        self.paint(pairs)
+        if sys.stdin is None or not sys.stdin.isatty():
+            time.sleep(HALTS)
+            return
+        kind, now = worst.kind.replace("_", "-"), self.sumo.simulation.getTime()
+        pair = f"{worst.ego.id} (ego) and {worst.foe.id} (foe)"
+        input(f"{now:g} s: a {worst.severity} {kind} conflict of {pair}; Enter goes on: ")
+
+    def _show(self, place: Point) -> None:
+        """Look at a place, and wait until sumo-gui does."""
+        before = self.sumo.gui.getBoundary(self.view)
+        self._look_at(place)
+        end = time.monotonic() + SHOWN_WITHIN
+        while self.sumo.gui.getBoundary(self.view) == before and time.monotonic() < end:
+            time.sleep(0.02)
 
     def _view(self) -> str | None:
         try:
@@ -164,8 +205,7 @@ class Painter:
 
     def _new(self) -> Shown:
         self.last_number += 1
-        used = [shown.colour for shown in self.shown.values()]
-        return Shown(self.last_number, min(PAIR_COLOURS, key=used.count))
+        return Shown(self.last_number)
 
     def _fill(self, pairs: list[Pair], present: dict[str, set[str]]) -> None:
         rank = list(self.colours)
@@ -190,6 +230,7 @@ class Painter:
         thin = max(THIN, view * LINE_OF_VIEW)
         severity = self.colours[pair.severity]
         drawn = set()
+        tops = [pair.at[1]]
 
         def polygon(name: str, shape: list[Point], colour: Colour, fill: bool, layer: int, width: float) -> None:
             drawn.add(name)
@@ -201,26 +242,33 @@ class Painter:
                 polygon(f"{name}_path", band(user.path, user.width), colour, True, ON_ROAD, 1.0)
             if user.domain is None or user.id not in present[user.domain]:
                 continue
-            middle, reach = self._place(user, pair.at)
-            radius = max(reach, view * RING_OF_VIEW)
-            polygon(f"{name}_ring", ring(middle, radius, radius + width), shown.colour, True, ABOVE_VEHICLES, 1.0)
-            polygon(f"{name}_line", [middle, pair.at], shown.colour, False, ABOVE_VEHICLES, thin)
-        radius = 2 * thin
-        polygon("point", ring(pair.at, 0.0, radius), shown.colour, True, ABOVE_VEHICLES, 1.0)
+            middle, front, reach = self._place(user, pair.at)
+            inner = max(reach, view * RING_OF_VIEW)
+            outer = inner + width
+            edge = ring(middle, inner - thin / 2, outer + thin / 2)
+            polygon(f"{name}_edge", edge, EDGE, True, ABOVE_VEHICLES - 1, 1.0)
+            polygon(f"{name}_ring", ring(middle, inner, outer), severity, True, ABOVE_VEHICLES, 1.0)
+            polygon(f"{name}_line", [front, pair.at], severity, False, ABOVE_VEHICLES, thin)
+            tops.append(middle[1] + outer)
+        polygon("point_edge", ring(pair.at, 0.0, 2.5 * thin), EDGE, True, ABOVE_VEHICLES - 1, 1.0)
+        polygon("point", ring(pair.at, 0.0, 2 * thin), severity, True, ABOVE_VEHICLES, 1.0)
         if self.label:
-            self._label(shown, pair)
+            self._label(shown, pair, max(tops) + LABEL_OF_VIEW * view)
         for name in [name for name in shown.polygons if name not in drawn]:
             self._remove_polygon(shown, name)
 
-    def _place(self, user: User, at: Point) -> tuple[Point, float]:
-        """The middle and the radius of the ring: around the conflict for an articulated vehicle, as that may bend."""
+    def _place(self, user: User, at: Point) -> tuple[Point, Point, float]:
+        """The middle of the ring, where the front is, and the ring's radius.
+
+        The ring is around the conflict for an articulated vehicle, as that may bend.
+        """
         if user.is_articulated:
-            return at, RING_MARGIN + 2.5
+            return at, at, RING_MARGIN + 2.5
         vehicles = getattr(self.sumo, str(user.domain))
         x, y = vehicles.getPosition(user.id)
         angle = math.radians(90.0 - vehicles.getAngle(user.id))
         back = user.length / 2.0
-        return (x - back * math.cos(angle), y - back * math.sin(angle)), back + RING_MARGIN
+        return (x - back * math.cos(angle), y - back * math.sin(angle)), (x, y), back + RING_MARGIN
 
     def _polygon(
         self, shown: Shown, name: str, shape: list[Point], colour: Colour, fill: bool, layer: int, width: float
@@ -237,12 +285,12 @@ class Painter:
                 polygons.setLineWidth(full, width)
         shown.polygons[name] = colour, width
 
-    def _label(self, shown: Shown, pair: Pair) -> None:
-        """A point of interest without a body, whose type is the text that sumo-gui writes."""
+    def _label(self, shown: Shown, pair: Pair, y: float) -> None:
+        """A point of interest whose type is the text that sumo-gui writes: above both rings, so that it hides neither."""
         left = "" if pair.time_left is None else f", {pair.time_left:.1f} s left"
         text = pair.kind.replace("_", "-") + left
         poi, points = self._name(shown, "label"), self.sumo.poi
-        x, y = pair.at[0], pair.at[1] + max(LABEL_ABOVE, 1.5 * RING_OF_VIEW * self._width_of_view())
+        x = pair.at[0]
         if poi in points.getIDList():
             points.setPosition(poi, x, y)
             points.setType(poi, text)
@@ -265,25 +313,39 @@ class Painter:
         return f"closecall.{shown.number}.{name}"
 
     def _draw_legend(self) -> None:
-        """Points of interest in the upper left corner, wherever the view is."""
+        """A panel in the upper left corner, wherever the view is: the rings of the severities, then ego's and foe's."""
         if self.view is None or not self.own_view:
             return
-        (left, bottom), (right, top) = self.sumo.gui.getBoundary(self.view)
-        width, height = right - left, top - bottom
-        entries = [
-            *self.colours.items(),
-            ("ego: thick ring", (255, 255, 255, 255)),
-            ("foe: thin ring", (255, 255, 255, 255)),
-        ]
-        for number, (text, colour) in enumerate(entries):
-            poi = f"closecall.legend.{number}"
-            from_left, from_top, apart = PLACE_OF_LEGEND
-            x, y = left + from_left * width, top - (from_top + number * apart) * height
-            if poi in self.legend:
-                self.sumo.poi.setPosition(poi, x, y)
-            else:
-                self.sumo.poi.add(poi, x, y, colour, text, ABOVE_VEHICLES + 1)
-                self.legend.append(poi)
+        (left, low), (right, top) = self.sumo.gui.getBoundary(self.view)
+        row = LEGEND_ROW * (top - low)
+        entries = [*((text, colour, True) for text, colour in self.colours.items()), ("ego", PALE, True)]
+        entries.append(("foe", PALE, False))
+        x, y, width = left + LEGEND_MARGIN * row, top - LEGEND_MARGIN * row, LEGEND_WIDTH * (right - left)
+        bottom = y - (len(entries) + LEGEND_MARGIN) * row
+        self._legend_polygon("panel", [(x, y), (x + width, y), (x + width, bottom), (x, bottom)], ROAD, 1)
+        for number, (text, colour, is_thick) in enumerate(entries):
+            middle = x + 0.7 * row, y - (number + 0.5 + LEGEND_MARGIN / 2) * row
+            outer = LEGEND_RING * row
+            inner = outer * (0.55 if is_thick else 0.85)
+            self._legend_polygon(f"ring.{number}", ring(middle, inner, outer), colour, 2)
+            self._legend_text(number, text, (x + 0.6 * width, middle[1] + LEGEND_RING * row))
+
+    def _legend_polygon(self, name: str, shape: list[Point], colour: Colour, layer: int) -> None:
+        full, polygons = f"closecall.legend.{name}", self.sumo.polygon
+        if (polygons, full) in self.legend:
+            polygons.setShape(full, shape)
+        else:
+            polygons.add(full, shape, colour, True, "closecall.legend", ABOVE_VEHICLES + layer, 1.0)
+            self.legend.append((polygons, full))
+
+    def _legend_text(self, number: int, text: str, at: Point) -> None:
+        """The text of a point of interest, which has the colour of the panel itself."""
+        full, points = f"closecall.legend.{number}", self.sumo.poi
+        if (points, full) in self.legend:
+            points.setPosition(full, *at)
+        else:
+            points.add(full, *at, ROAD, text, ABOVE_VEHICLES + 3)
+            self.legend.append((points, full))
 
 
 def ring(middle: Point, inner: float, outer: float) -> list[Point]:

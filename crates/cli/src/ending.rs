@@ -9,11 +9,11 @@ use closecall_run::output::summary::Summary;
 /// Prints the summary; with `explain`, every skipped test and the time that each part of the work took.
 pub(super) fn print_summary(summary: &Summary, log: &Path, explain: bool) -> Result<()> {
     print(format_args!("{summary}"))?;
-    let skipped = summary.skipped.to_string();
-    if !skipped.is_empty() && !explain {
-        print(format_args!("skipped {skipped}; none could change the result (--explain lists them)\n"))?;
-    }
     if explain {
+        let skipped = summary.skipped.to_string();
+        if !skipped.is_empty() {
+            print(format_args!("skipped {skipped}; none could change the result\n"))?;
+        }
         for left_out in &summary.left_out {
             print(format_args!("{left_out}\n"))?;
         }

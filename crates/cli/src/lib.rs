@@ -6,6 +6,7 @@
 mod check_args;
 mod ending;
 mod error;
+mod example;
 mod exit_status;
 mod export;
 mod extract;
@@ -21,6 +22,7 @@ mod regress;
 mod replay;
 mod report;
 mod run;
+mod run_progress;
 mod selector;
 mod settings;
 mod stats;
@@ -68,6 +70,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8 
         Command::Clip(arguments) => playback::clip(&arguments, sumo).map(|()| 0),
         Command::Show(arguments) => playback::show(&arguments, sumo).map(|()| 0),
         Command::Inspect(arguments) => inspect::run(&arguments).map(|()| 0),
+        Command::Example(arguments) => example::run(&arguments).map(|()| 0),
         Command::Extract(arguments) => extract::run(&arguments, &settings::known(&command()), sumo).map(|()| 0),
         Command::Export(arguments) => export::run(arguments).map(|()| 0),
         Command::Report(arguments) => report::run(&arguments).map(|()| 0),

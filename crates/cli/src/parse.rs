@@ -8,7 +8,7 @@ use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use super::error::{Error, Result};
 use super::print::value;
-use super::{export, extract, inspect, mu, playback, regress, replay, report, run, settings, stats};
+use super::{example, export, extract, inspect, mu, playback, regress, replay, report, run, settings, stats};
 use closecall_run::options::{OptionsFile, old_names};
 
 use super::plot;
@@ -34,6 +34,8 @@ pub(super) enum Command {
     Replay(Box<replay::ReplayArgs>),
     /// Identify a recording, list missing data, and print the command that replays it
     Inspect(inspect::InspectArgs),
+    /// Write a scenario that comes with closecall, to try it on
+    Example(example::ExampleArgs),
     /// Run scenarios and compare their conflicts with the approved baseline
     Regress(regress::RegressArgs),
     /// Print the minimal collision distance μ of two road users under each model

@@ -13,6 +13,7 @@ use closecall::util::threads::default_threads;
 use closecall_run::Error as RunError;
 use closecall_run::RunOptions;
 use closecall_run::input::replay::Replay;
+use closecall_run::input::scenario_kind;
 use closecall_run::input::tracks::{self, TrackOptions};
 use closecall_run::output::input_hash::Input;
 use closecall_run::output::record::RunRecord;
@@ -68,6 +69,7 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     let folder = arguments.check.claim(&out)?;
     let out = folder.path().to_owned();
     let net = arguments.net.as_deref().map(closecall_run::net::read).transpose()?.map(Arc::new);
+    arguments.recordings.iter().try_for_each(|recording| scenario_kind::check_is_recording(recording))?;
     let opened = tracks::open(&arguments.recordings, &arguments.tracks, net.as_deref(), &mut || false)?;
     let demand = arguments.route_files.iter().cloned().chain(opened.types()).collect::<Vec<_>>();
     let mut replay = Replay::open(opened.recording(), &demand, net.as_deref(), &options.model)?;

@@ -7,11 +7,12 @@ use clap::Args;
 use super::check_args::CheckArgs;
 use super::error::Result;
 use super::sumo::{GuiRequest, RunRequest, Sumo, no_sumo};
+use closecall::detection::kind::Severity;
 use closecall::options::{step_length, time};
 use closecall::util::threads::default_threads;
 use closecall::util::units::Second;
 use closecall_run::Error;
-use closecall_run::input::sumo_files;
+use closecall_run::input::{scenario_kind, sumo_files};
 use closecall_run::util::input_file;
 
 /// A SUMO scenario and how to run it.
@@ -43,6 +44,9 @@ pub(crate) struct RunArgs {
     /// With `--gui`, write the kind and the time left beside each conflict.
     #[arg(long, requires = "gui")]
     label: bool,
+    /// With `--gui`, halt at each conflict that becomes this severe, in its view, until you press Enter.
+    #[arg(long, value_enum, value_name = "SEVERITY", requires = "gui")]
+    pause_at: Option<Severity>,
     /// With `--gui`, close sumo-gui when the run ends.
     #[arg(long, requires = "gui")]
     quit_on_end: bool,
@@ -74,6 +78,7 @@ pub(super) fn request(arguments: &RunArgs) -> Result<RunRequest> {
     if scenario.is_dir() {
         return Err(Error::content(&scenario, "it is a folder, not a SUMO configuration").into());
     }
+    scenario_kind::check_is_scenario(&scenario)?;
     sumo_files::check_are_files(&scenario)?;
     let out = arguments.check.log_folder(&scenario);
     let options = arguments.check.checked(&out)?;
@@ -91,7 +96,11 @@ pub(super) fn request(arguments: &RunArgs) -> Result<RunRequest> {
     sumo_words.extend_from_slice(&arguments.sumo_options);
     Ok(RunRequest {
         scenario,
-        gui: arguments.gui.then_some(GuiRequest { label: arguments.label, quit_on_end: arguments.quit_on_end }),
+        gui: arguments.gui.then_some(GuiRequest {
+            label: arguments.label,
+            quit_on_end: arguments.quit_on_end,
+            pause_at: arguments.pause_at,
+        }),
         out,
         threads: arguments.threads.unwrap_or_else(default_threads),
         quiet: arguments.check.quiet,

@@ -9,8 +9,11 @@ use super::print::{print, value};
 use super::progress::CountBar;
 use closecall_analysis::filter::ConflictFilter;
 use closecall_analysis::logged::{check_keeps_logs, check_none_lost};
-use closecall_analysis::statistics::{By, Observed, Request, Statistics, table};
+use closecall_analysis::statistics::{By, Observed, Request, Statistics, quoted, table};
 use closecall_run::util::output_file;
+
+/// The default length of the lists.
+const LISTED: usize = 10;
 
 /// Which logs to analyse, and how to print the result.
 #[derive(Args)]
@@ -18,18 +21,21 @@ pub(crate) struct StatsArgs {
     /// Log folders, or folders that contain log folders at any depth, such as the results of a sweep.
     #[arg(value_name = "LOG", required = true)]
     folders: Vec<PathBuf>,
-    /// What to group the conflicts by.
-    #[arg(long, value_enum, default_value = "kind", help_heading = "Output")]
-    by: By,
+    /// What to group the conflicts by [default: kind].
+    #[arg(long, value_enum, help_heading = "Output")]
+    by: Option<By>,
     /// Output format.
     #[arg(long, value_enum, default_value = "text", help_heading = "Output")]
     format: Format,
     /// File to write instead of standard output.
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     out: Option<PathBuf>,
-    /// Number of worst conflicts and of hot spots to list.
-    #[arg(long, alias = "worst", value_name = "N", default_value_t = 10, help_heading = "Output")]
-    top: usize,
+    /// Number of worst conflicts and of hot spots to list [default: 10].
+    #[arg(long, alias = "worst", value_name = "N", help_heading = "Output")]
+    top: Option<usize>,
+    /// Print all tables with all columns, as --by, --top, --against and --plan do; otherwise what fits a screen.
+    #[arg(long, help_heading = "Output")]
+    all: bool,
     /// With `--format csv`, begin ids that a spreadsheet would run as formulas (=, +, -, @) with an apostrophe.
     #[arg(long, help_heading = "Output")]
     csv_safe: bool,
@@ -79,13 +85,16 @@ enum Format {
 
 /// Prints the statistics.
 pub fn run(arguments: StatsArgs) -> Result<()> {
-    let StatsArgs { folders, by, format, against, csv_safe, out, top, plan, observed, years, filter } = arguments;
+    let StatsArgs { folders, by, format, against, csv_safe, out, top, all, plan, observed, years, filter } = arguments;
     if let Some(out) = &out {
         check_keeps_logs(out, &[&folders[..], &against].concat(), None)?;
     }
     let mut bar = CountBar::new("conflicts", true);
     let observed = observed.zip(years).map(|(crashes, years)| Observed { crashes, years });
-    let request = Request { folders, by, against, filter, worst: top, plan, observed };
+    let is_whole = all || by.is_some() || top.is_some() || !against.is_empty() || plan.is_some();
+    let logs = folders.iter().map(|folder| quoted(&folder.to_string_lossy())).collect::<Vec<_>>().join(" ");
+    let (by, worst) = (by.unwrap_or_default(), top.unwrap_or(LISTED));
+    let request = Request { folders, by, against, filter, worst, plan, observed };
     let statistics = Statistics::of(&request, &mut |read, all| bar.show(read, all))?;
     drop(bar);
     if observed.is_some() && statistics.transferred.is_none() {
@@ -98,6 +107,8 @@ pub fn run(arguments: StatsArgs) -> Result<()> {
     }
     let printed = match format {
         Format::Json => serde_json::to_string_pretty(&statistics).map_err(|error| value(error.to_string()))? + "\n",
+        // The rates of several variants stand side by side only in the whole tables.
+        Format::Text if !is_whole && statistics.variants.len() == 1 => table::brief(&statistics, &logs),
         Format::Text => table::text(&table::tables(&statistics)),
         Format::Csv => table::csv(&table::tables(&statistics), csv_safe)?,
         Format::Html => table::html(&statistics.name, &table::tables(&statistics)),

@@ -9,6 +9,7 @@ use super::error::Result;
 use super::files::{absolute, default_folder, print_if_elsewhere};
 use super::print::{print, value};
 use super::run::request;
+use super::run_progress::{RunProgress, Telling};
 use super::sumo::{RunRequest, Sumo, no_sumo};
 use super::sweep::{ParseRun, Passed, UNFINISHED, check, check_runs, distribute};
 use super::workers::Workers;
@@ -80,7 +81,11 @@ impl ScenarioArgs {
         check_runs(&runs, &seeds, parse_run)?;
         let missing = runs.missing()?;
         let workers = Workers::Local(self.workers.map_or_else(processors, usize::from));
-        distribute(sumo, &workers, &missing, runs.tasks.len() - missing.len(), false, &out.join(UNFINISHED))?;
+        let done = runs.tasks.len() - missing.len();
+        let telling = if missing.is_empty() { Telling::Nothing } else { Telling::Cost };
+        let step = sumos_value(&own, "step-length").and_then(|step| step.parse().ok());
+        let progress = RunProgress::new(&missing, done, workers.at_once(), step, telling);
+        distribute(sumo, &workers, &missing, progress, &out.join(UNFINISHED))?;
         let failed = runs.missing()?.into_iter().map(|task| task.name.clone()).collect::<Vec<_>>();
         let study = Study::read(plan, &runs.tasks, &failed, seeds.to_string(), self.accuracy)?;
         let name = scenario.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -99,7 +104,7 @@ impl ScenarioArgs {
 fn own_value(run: &RunRequest, vary: &Vary) -> Option<String> {
     let name = vary.option();
     if vary.is_sumos() || name == "step-length" {
-        return word_value(&run.sumo_words, name).or_else(|| sumo_files::value_of(&run.scenario, name));
+        return sumos_value(run, name);
     }
     if name == "threads" {
         return Some(run.threads.to_string());
@@ -108,6 +113,11 @@ fn own_value(run: &RunRequest, vary: &Vary) -> Option<String> {
         serde_json::Value::String(text) => Some(text.clone()),
         other => Some(other.to_string()),
     }
+}
+
+/// The value of one of SUMO's options, by its words or the configuration.
+fn sumos_value(run: &RunRequest, name: &str) -> Option<String> {
+    word_value(&run.sumo_words, name).or_else(|| sumo_files::value_of(&run.scenario, name))
 }
 
 /// The value of an option among SUMO's words.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use super::error;
 use super::print::value;
+use closecall::detection::kind::Severity;
 use closecall_run::Result;
 use closecall_run::RunOptions;
 use closecall_run::output::folder::LogFolder;
@@ -69,6 +70,8 @@ pub struct GuiRequest {
     pub label: bool,
     /// Whether to close sumo-gui at the end.
     pub quit_on_end: bool,
+    /// Halt at each conflict that becomes this severe.
+    pub pause_at: Option<Severity>,
 }
 
 /// A clip that is to be shown in sumo-gui.

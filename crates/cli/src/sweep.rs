@@ -2,17 +2,16 @@
 
 use std::collections::HashSet;
 use std::ffi::OsString;
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, FromArgMatches};
-use indicatif::{ProgressBar, ProgressStyle};
 
 use super::error::{Error, Result};
 use super::files::{absolute, default_folder, print_if_elsewhere};
 use super::print::{print, value};
 use super::run::{RunArgs, request};
+use super::run_progress::{RunProgress, Telling};
 use super::sumo::{Sumo, no_sumo};
 use super::workers::Workers;
 use closecall::util::threads::processors;
@@ -95,11 +94,12 @@ impl Passed {
 /// fastest. Clips of thousands of runs are made only if they are asked for.
 const DEFAULTS: [(&str, &str); 2] = [("threads", "1"), ("log-clips", "none")];
 /// Arguments of `closecall run` that a sweep sets itself or has no use for.
-const OWN: [&str; 12] = [
+const OWN: [&str; 13] = [
     "scenario",
     "configuration_file",
     "gui",
     "label",
+    "pause_at",
     "quit_on_end",
     "out",
     "force",
@@ -209,7 +209,9 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Re
         Some(address) => Workers::Scheduler(address),
         None => Workers::Local(arguments.workers.map_or_else(processors, usize::from)),
     };
-    let failed = distribute(sumo, &workers, &missing, done, arguments.quiet, &unfinished)?;
+    let telling = if arguments.quiet { Telling::Nothing } else { Telling::Progress };
+    let progress = RunProgress::new(&missing, done, workers.at_once(), None, telling);
+    let failed = distribute(sumo, &workers, &missing, progress, &unfinished)?;
     if !arguments.quiet {
         if arguments.out.is_none() {
             print_if_elsewhere(&default_out, &arguments.scenario, RESULTS)?;
@@ -245,44 +247,27 @@ pub(super) fn distribute(
     sumo: Sumo,
     workers: &Workers,
     missing: &[&Task],
-    done_before: usize,
-    quiet: bool,
+    mut progress: RunProgress,
     unfinished: &Path,
 ) -> Result<usize> {
     if missing.is_empty() {
         return Ok(0);
     }
     std::fs::create_dir_all(unfinished).map_err(|source| RunError::file(unfinished, source))?;
-    let bar = bar(done_before, done_before + missing.len(), quiet);
-    let mut done = done_before;
     let mut failed = 0;
     let outcome = (sumo.distribute)(workers, unfinished, missing, &mut |name, error| {
-        done += 1;
-        if let Some(error) = error {
-            failed += 1;
-            bar.suspend(|| eprintln!("closecall: run {name} failed twice: {error}"));
-        }
-        bar.inc(1);
+        failed += usize::from(error.is_some());
+        progress.count(name, error.map(|error| format!("run {name} failed twice: {error}")));
     });
-    bar.finish_and_clear();
+    let [done, all] = progress.counts();
+    drop(progress);
     // Removes what killed workers left; if that fails, the folder is at least hidden.
     let _ = std::fs::remove_dir_all(unfinished);
     match outcome {
         Ok(()) => Ok(failed),
-        Err(RunError::Stopped) => Err(Error::Paused(done, done_before + missing.len())),
+        Err(RunError::Stopped) => Err(Error::Paused(done, all)),
         Err(error) => Err(error.into()),
     }
-}
-
-/// The progress bar of the sweep; only on a terminal.
-fn bar(done: usize, all: usize, quiet: bool) -> ProgressBar {
-    if quiet || !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let style = ProgressStyle::with_template("{bar:30} {pos} of {len} runs, {elapsed}, {eta} to go");
-    let bar = ProgressBar::new(all as u64).with_style(style.unwrap_or(ProgressStyle::default_bar()));
-    bar.enable_steady_tick(std::time::Duration::from_secs(1));
-    bar.with_position(done as u64)
 }
 
 /// Checks that an option can be varied.

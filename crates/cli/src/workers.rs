@@ -14,6 +14,16 @@ pub enum Workers {
     Scheduler(String),
 }
 
+impl Workers {
+    /// The runs at the same time, as far as that is known.
+    pub(crate) fn at_once(&self) -> usize {
+        match self {
+            Self::Local(processes) => *processes,
+            Self::Scheduler(_) => 1,
+        }
+    }
+}
+
 /// Takes the name of a task that has ended and, if it failed, why.
 pub type ReportEnd<'a> = dyn FnMut(&str, Option<&str>) + 'a;
 

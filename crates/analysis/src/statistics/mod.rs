@@ -50,7 +50,7 @@ pub use quantiles::{Quantiles, quantile};
 pub use rate::{IntervalMethod, Rate, Ratio, rate, t_quantile};
 pub use rates::Traffic;
 pub use variant::{GroupStatistics, VariantStatistics};
-pub use worst::RankedConflict;
+pub use worst::{RankedConflict, quoted};
 
 /// The statistics that are asked for.
 #[derive(Clone, Debug)]

@@ -9,15 +9,11 @@ use serde::Serialize;
 use crate::logged::{LoggedConflict, LoggedRun};
 use crate::playback::may_have_clip;
 use crate::variants::Variants;
-use closecall::util::units::{Metre, Second};
+use closecall::util::units::Second;
 use closecall_run::output::rank::Rank;
 
 /// sumo-gui halts this long before a conflict, and the run ends this long after it, in s.
 const AROUND: Second = 5.0;
-/// The width of the net that sumo-gui shows around a conflict, in m.
-const SHOWN: Metre = 80.0;
-/// The zoom in % if the net's extent is unknown.
-const ZOOM: f64 = 1000.0;
 
 /// One of the worst conflicts.
 #[derive(Clone, Debug, Serialize)]
@@ -33,7 +29,7 @@ pub struct RankedConflict {
     /// The conflict.
     #[serde(flatten)]
     pub conflict: LoggedConflict,
-    /// The command that shows it in sumo-gui, for a POSIX shell; none for a recording or if a script started SUMO.
+    /// The command that shows it in sumo-gui, none for a recording or if a script started SUMO.
     pub command: Option<String>,
     #[serde(skip)]
     run: usize,
@@ -130,28 +126,22 @@ impl WorstOf {
     }
 }
 
-/// The command that shows a conflict without a clip in sumo-gui.
+/// The command that shows a conflict without a clip in sumo-gui, for any shell.
 ///
 /// The run begins at its original begin, because vehicles that departed before a later `--begin` would be missing.
-/// sumo-gui runs without delay to a breakpoint a few seconds before the conflict and halts there, zoomed to the conflict
-/// point. It accepts a viewport only from a file, so the shell creates one.
+/// sumo-gui runs without delay to a breakpoint a few seconds before the conflict and halts there. It takes a view from no
+/// option, so the place has to be looked for: the table has it.
 fn show(run: &LoggedRun, conflict: &LoggedConflict) -> Option<String> {
     if run.sumo_words.is_empty() {
         return None;
     }
-    let view = format!(
-        "<viewsettings><delay value=\"0\"/><viewport x=\"{:.1}\" y=\"{:.1}\" zoom=\"{:.0}\"/></viewsettings>",
-        conflict.x,
-        conflict.y,
-        zoom(run).unwrap_or(ZOOM)
-    );
     let mut args = vec!["sumo-gui".to_owned()];
     args.extend(kept(&run.sumo_words).map(|word| quoted(word)));
     let begin = (conflict.begin - AROUND).max(run.summary.begin);
     let around = [("--breakpoints", begin), ("--end", conflict.end + AROUND)];
     args.extend(around.iter().flat_map(|(option, time)| [(*option).to_owned(), format!("{time:.1}")]));
-    args.extend(["--start".to_owned(), "--gui-settings-file".to_owned(), "\"$view\"".to_owned()]);
-    Some(format!("view=$(mktemp) && printf %s {} > \"$view\" && {}", quoted(&view), args.join(" ")))
+    args.extend(["--delay", "0", "--start"].map(str::to_owned));
+    Some(args.join(" "))
 }
 
 /// A run's words without the options that the command sets itself: SUMO accepts each option only once.
@@ -159,41 +149,23 @@ fn kept(args: &[String]) -> impl Iterator<Item = &String> {
     let mut is_value = false;
     args.iter().filter(move |word| {
         let (option, has_value) = word.split_once('=').map_or((word.as_str(), false), |(option, _)| (option, true));
-        let is_anew = ["--end", "-e", "--gui-settings-file", "-g", "--breakpoints"].contains(&option);
+        let is_anew = ["--end", "-e", "--breakpoints", "--delay", "-d"].contains(&option);
         let is_left_out = is_value || is_anew;
         is_value = !is_value && is_anew && !has_value;
         !is_left_out
     })
 }
 
-/// A word, quoted for a POSIX shell if necessary.
-fn quoted(word: &str) -> String {
+/// A word, quoted if necessary: in double quotes, which every shell takes, where they are enough.
+pub fn quoted(word: &str) -> String {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./=:,@%+".contains(letter);
     if !word.is_empty() && word.chars().all(plain) {
         word.to_owned()
-    } else {
+    } else if word.contains(['"', '$', '`', '!']) {
         format!("'{}'", word.replace('\'', r"'\''"))
+    } else {
+        format!("\"{word}\"")
     }
-}
-
-/// sumo-gui's zoom on a conflict, in % of the whole net; none if the net is no longer available.
-fn zoom(run: &LoggedRun) -> Option<f64> {
-    run.inputs.iter().find_map(|input| zoom_on(&input.path))
-}
-
-/// The zoom for this net; none if the file is not a net.
-fn zoom_on(net: &Path) -> Option<f64> {
-    let mut head = Vec::new();
-    std::io::Read::read_to_end(
-        &mut std::io::Read::take(closecall_run::util::input_file::open(net).ok()?, 1 << 16),
-        &mut head,
-    )
-    .ok()?;
-    let head = String::from_utf8_lossy(&head);
-    let (_, bounds) = head.split_once("convBoundary=\"")?;
-    let bounds = bounds.split_once('"')?.0.split(',').map(|number| number.parse::<f64>().ok());
-    let [left, low, right, high] = bounds.collect::<Option<Vec<_>>>()?[..] else { return None };
-    Some(((right - left).max(high - low) / SHOWN * 100.0).max(100.0))
 }
 
 #[cfg(test)]
@@ -209,6 +181,7 @@ mod tests {
     #[test]
     fn a_word_with_a_space_or_a_quote_is_quoted() {
         assert_eq!(quoted("a/b.sumocfg"), "a/b.sumocfg");
-        assert_eq!(quoted("it's a;b"), r"'it'\''s a;b'");
+        assert_eq!(quoted("it's a;b"), "\"it's a;b\"");
+        assert_eq!(quoted("it's $1"), r"'it'\''s $1'");
     }
 }

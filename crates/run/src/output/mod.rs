@@ -9,6 +9,7 @@ pub mod formats;
 pub mod input_hash;
 pub mod log;
 pub mod net_faults_csv;
+pub mod overlaps;
 pub mod palette;
 pub mod parquet_columns;
 mod parquet_file;

@@ -6,13 +6,15 @@ use std::fmt;
 use ecow::EcoString;
 use serde::{Deserialize, Serialize};
 
+use super::overlaps::{Overlaps, SumoCollisions};
 use super::rank::Rank;
 use crate::util::decimal::Written;
 use closecall::detection::detector::{LeftOut, Work};
 use closecall::detection::kind::{Kind, Severity};
 use closecall::events::{Artefact, Conflict};
+use closecall::traffic::roster::Roster;
 use closecall::util::remark::Remark;
-use closecall::util::units::Second;
+use closecall::util::units::{Second, counted};
 
 /// How many conflicts are none of traffic's, by what they are.
 pub type SetAside = BTreeMap<String, u64>;
@@ -49,6 +51,9 @@ pub struct Summary {
     /// The conflict to look at first; not written to `run.json`.
     #[serde(skip)]
     pub worst: Option<WorstConflict>,
+    /// What the overlaps have in common; not written to `run.json`.
+    #[serde(skip)]
+    pub overlaps: Overlaps,
     /// The share of tests that was skipped; not written to `run.json`.
     #[serde(skip)]
     pub skipped: Skipped,
@@ -72,15 +77,6 @@ pub struct Count {
     pub artefact: Option<Artefact>,
     /// The number of conflicts.
     pub count: u64,
-}
-
-/// The collisions that SUMO itself reported.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct SumoCollisions {
-    /// The pairs that SUMO reported.
-    pub reported: u64,
-    /// The conflicts whose pair SUMO reported while they were open.
-    pub in_conflict: u64,
 }
 
 /// The amount of traffic in a run.
@@ -188,7 +184,7 @@ impl fmt::Display for Skipped {
 
 impl Summary {
     /// Counts a conflict; an artefact only with `counts_artefacts`.
-    pub fn add(&mut self, conflict: &Conflict, counts_artefacts: bool) {
+    pub fn add(&mut self, conflict: &Conflict, counts_artefacts: bool, roster: &Roster) {
         let Conflict { kind, severity, .. } = *conflict;
         let artefact = conflict.artefact.filter(|_| !counts_artefacts);
         let of = |count: &Count| (count.kind, count.severity, count.artefact);
@@ -196,6 +192,7 @@ impl Summary {
             Ok(known) => self.conflicts[known].count += 1,
             Err(place) => self.conflicts.insert(place, Count { kind, severity, artefact, count: 1 }),
         }
+        self.overlaps.add(conflict, artefact.is_some(), roster);
         if artefact.is_some() {
             return;
         }
@@ -250,8 +247,12 @@ pub fn in_words(set_aside: &SetAside) -> Option<String> {
 }
 
 impl fmt::Display for Summary {
-    /// The table of conflicts, the amount of traffic, and the remarks that were not said at the beginning.
+    /// The remarks that were not said at the beginning, the table of conflicts, what was set aside, and the amount of traffic.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        self.remarks
+            .iter()
+            .filter(|remark| !remark.code.is_of_opening())
+            .try_for_each(|remark| writeln!(f, "{remark}"))?;
         write!(f, "{:<10}", "conflicts")?;
         for severity in Severity::ALL.iter().rev() {
             write!(f, "{:>10}", severity.name())?;
@@ -267,27 +268,19 @@ impl fmt::Display for Summary {
         if let Some(set_aside) = self.set_aside_in_words() {
             writeln!(f, "{set_aside}")?;
         }
-        writeln!(
-            f,
-            "risk index {:.2}: the sum of all crash probabilities, to compare plans with; not a number of crashes",
-            self.risk_index
-        )?;
+        writeln!(f, "{}", self.overlaps.in_words(self.collisions_sumo))?;
         let Exposure { vehicles, persons, vehicle_kilometres, .. } = self.exposure;
-        write!(f, "collisions {}", self.collisions)?;
-        match self.collisions_sumo {
-            Some(SumoCollisions { reported, in_conflict }) => {
-                writeln!(f, "; SUMO reports {reported}, {in_conflict} of them in a conflict (docs/log.md says why)")?;
-            }
-            None => writeln!(f)?,
-        }
         writeln!(
             f,
-            "{vehicles} vehicles, {persons} persons, {vehicle_kilometres:.1} vehicle-km, {} steps from {} to {} s",
-            self.steps,
+            "{}, {}, {vehicle_kilometres:.1} vehicle-km, {} from {} to {} s; risk index \
+             {:.2} (not a number of crashes)",
+            counted(vehicles, "vehicle"),
+            counted(persons, "person"),
+            counted(self.steps, "step"),
             Written(self.begin),
-            Written(self.end)
-        )?;
-        self.remarks.iter().filter(|remark| !remark.code.is_of_opening()).try_for_each(|remark| writeln!(f, "{remark}"))
+            Written(self.end),
+            self.risk_index
+        )
     }
 }
 

@@ -10,7 +10,7 @@ use closecall::detection::encounter::Encounter;
 use closecall::events::{Alarm, Conflict, PetSoFar};
 use closecall::geometry::Point;
 use closecall::traffic::net::Net;
-use closecall::traffic::roster::UserIndex;
+use closecall::traffic::roster::{Roster, UserIndex};
 use closecall::util::remark::{Remark, RemarkCode};
 
 impl Run {
@@ -80,7 +80,7 @@ impl Run {
     pub fn summary(&self) -> Summary {
         let mut summary = self.summary.clone();
         for conflict in self.tracker.open(&self.roster) {
-            summary.add(&conflict, self.counts_artefacts);
+            summary.add(&conflict, self.counts_artefacts, &self.roster);
         }
         summary
     }
@@ -101,7 +101,7 @@ impl Run {
         let clips = self.clips.as_mut().map_or_else(Vec::new, |clips| clips.finish(closed, first));
         let written = self.writing.finish(closed, &clips, &self.roster, self.net.as_deref());
         self.net_faults.take(closed, first, self.net.as_deref(), &self.roster);
-        count(closed, self.counts_artefacts, &mut self.summary, &mut self.conflicts, self.most_conflicts);
+        count(closed, &self.roster, self.counts_artefacts, &mut self.summary, &mut self.conflicts, self.most_conflicts);
         closed.iter().for_each(|conflict| self.ordinary_driving.count(conflict, &self.roster));
         self.summary.entered = self.net.as_deref().map(|net| self.entering.by_junction(net)).unwrap_or_default();
         self.summary.left_out = self.detector.left_out();
@@ -120,13 +120,14 @@ impl Run {
 /// Counts closed conflicts, and keeps the latest `most` of them.
 pub(super) fn count(
     closed: &[Conflict],
+    roster: &Roster,
     counts_artefacts: bool,
     summary: &mut Summary,
     kept: &mut VecDeque<Conflict>,
     most: usize,
 ) {
     for conflict in closed {
-        summary.add(conflict, counts_artefacts);
+        summary.add(conflict, counts_artefacts, roster);
     }
     let new = &closed[closed.len().saturating_sub(most)..];
     kept.drain(..(kept.len() + new.len()).saturating_sub(most).min(kept.len()));

@@ -139,7 +139,7 @@ impl Run {
         };
         let closed = self.tracker.step(frame, roster, detector.encounters(), around, self.collided.as_deref());
         self.net_faults.take(closed, self.summary.logged() + 1, net, roster);
-        count(closed, self.counts_artefacts, &mut self.summary, &mut self.conflicts, self.most_conflicts);
+        count(closed, roster, self.counts_artefacts, &mut self.summary, &mut self.conflicts, self.most_conflicts);
         closed.iter().for_each(|conflict| self.ordinary_driving.count(conflict, roster));
     }
 

@@ -19,6 +19,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
+use crate::batch::regress::outcome::Outcome;
 use crate::batch::regress::running::{Job, Runner};
 use crate::batch::regress::scenario::{SETTINGS, Scenario};
 use crate::logged::{ConflictReader, ConflictSelector, LoggedConflict, LoggedRun};
@@ -105,6 +106,7 @@ impl Cut<'_> {
             Error::content(log, format!("conflict {id} does not come back when SUMO runs again: {why}{changed}"))
         })?;
         let mut remark = None;
+        let mut approved = self.logs.join("0");
         let sumo = run.versions.sumo.as_deref().unwrap_or_default();
         let mut args = Readme { conflict: self.conflict, scenario: run.name(), sumo, until: period.end, from: None };
         if period.is_within {
@@ -114,6 +116,7 @@ impl Cut<'_> {
             match self.look(Vec::new(), tools, [1, all])? {
                 Ok(()) => {
                     args.from = Some(period.from);
+                    approved = self.logs.join("1");
                     kept = short.files();
                     kept.extend(filter);
                     kept.push(STATE.to_owned());
@@ -132,6 +135,8 @@ impl Cut<'_> {
         }
         kept.extend([CONFIGURATION, SETTINGS].map(str::to_owned));
         self.remove_others(&kept)?;
+        // What the run has just found is the baseline, so that `closecall regress` works in the folder at once.
+        Outcome::collect(place, &[(self.seed, approved)])?.write(&place.join("expected"))?;
         Ok(remark)
     }
 

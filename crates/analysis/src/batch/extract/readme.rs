@@ -34,7 +34,8 @@ impl Readme<'_> {
              {}, with a margin of {margin} m, in a run of {sumo}.\n\
              `conflict.sumocfg` {begins}, and ends at {} s; its net is the whole one. Other versions of SUMO may drive otherwise.\n\
              `closecall run conflict.sumocfg --config closecall.toml` finds it again; `--gui` shows it in sumo-gui.\n\
-             `pytest` runs `test_conflict.py`, which fails when kind or margin change.\n",
+             `pytest` runs `test_conflict.py`, which fails when kind or margin change; `closecall regress .` compares all conflicts \
+             with those in `expected/`.\n",
             self.what(),
             Written(self.until)
         )

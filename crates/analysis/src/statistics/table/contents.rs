@@ -39,7 +39,7 @@ pub fn tables(statistics: &Statistics) -> Vec<Table> {
     }
     tables.extend(statistics.plan.as_ref().map(planned));
     tables.extend(statistics.transferred.as_ref().map(transferred));
-    tables.retain(|table| !table.rows.is_empty());
+    tables.retain(|table| !table.rows.is_empty() || (table.columns.is_empty() && !table.notes.is_empty()));
     tables
 }
 
@@ -53,7 +53,7 @@ fn variant_cell(variant: &Option<String>) -> Option<Cell> {
 }
 
 /// The traffic of each variant.
-fn traffic(statistics: &Statistics) -> Table {
+pub(super) fn traffic(statistics: &Statistics) -> Table {
     let several = statistics.variants.len() > 1;
     let row = |of_variant: &VariantStatistics| {
         let traffic = &of_variant.traffic;
@@ -120,7 +120,7 @@ fn with_interval(rate: Option<Rate>) -> [Cell; 3] {
     [rate.map(|rate| rate.value), rate.map(|rate| rate.low), rate.map(|rate| rate.high)].map(Cell::maybe)
 }
 
-fn rates(groups: &[GroupStatistics]) -> Table {
+pub(super) fn rates(groups: &[GroupStatistics]) -> Table {
     let rows = groups.iter().map(|group| {
         let head = [Cell::Text(group.group.clone()), Cell::Count(group.count), Cell::Count(group.collisions)];
         let head = variant_cell(&group.variant).into_iter().chain(head);
@@ -169,7 +169,7 @@ fn risk(rate: Rate) -> Table {
     }
 }
 
-fn quantiles(groups: &[GroupStatistics]) -> Table {
+pub(super) fn quantiles(groups: &[GroupStatistics]) -> Table {
     let names = ["group", "measure", "conflicts", "5 %", "25 %", "50 %", "75 %", "95 %"];
     let rows = groups.iter().flat_map(|group| {
         MEASURES.iter().map(|(name, of)| {
@@ -187,7 +187,7 @@ fn quantiles(groups: &[GroupStatistics]) -> Table {
     }
 }
 
-fn spots(title: &'static str, spots: &[HotSpot]) -> Table {
+pub(super) fn spots(title: &'static str, spots: &[HotSpot]) -> Table {
     let is_entered = spots.iter().any(|spot| spot.risk_index_per_1000_entering.is_some());
     let rates: [SpotRate; 4] = [
         ("risk index", |spot| spot.risk_index),
@@ -213,7 +213,7 @@ fn spots(title: &'static str, spots: &[HotSpot]) -> Table {
     }
 }
 
-fn worst(worst: &[RankedConflict]) -> Table {
+pub(super) fn worst(worst: &[RankedConflict]) -> Table {
     let row = |(rank, found): (usize, &RankedConflict)| {
         let conflict = &found.conflict;
         let cells = [
@@ -265,8 +265,11 @@ fn extremes(extremes: &[Extrapolation]) -> Table {
             of(|crashes| crashes.p_value),
         ]
     };
-    let refused =
-        extremes.iter().filter_map(|found| Some(format!("{}: refused: {}", found.quantity, found.refused.as_ref()?)));
+    let refused = refusals(extremes);
+    let found = extremes.iter().filter(|found| found.crashes.is_some()).map(row).collect::<Vec<_>>();
+    if found.is_empty() {
+        return Table { title: "crashes, extrapolated", notes: refused.into_iter().collect(), ..Table::default() };
+    }
     Table {
         title: "crashes, extrapolated",
         columns: vec![
@@ -282,7 +285,22 @@ fn extremes(extremes: &[Extrapolation]) -> Table {
             "A2",
             "p of fit",
         ],
-        rows: extremes.iter().map(row).collect(),
-        notes: refused.collect(),
+        rows: found,
+        notes: refused.into_iter().collect(),
     }
+}
+
+/// The frequencies that cannot be computed, and why, in a line.
+fn refusals(extremes: &[Extrapolation]) -> Option<String> {
+    let mut whys: Vec<(&str, Vec<&str>)> = Vec::new();
+    for found in extremes {
+        let Some(why) = &found.refused else { continue };
+        match whys.iter_mut().find(|(known, _)| known == why) {
+            Some((_, quantities)) => quantities.push(found.quantity),
+            None => whys.push((why, vec![found.quantity])),
+        }
+    }
+    let whys = whys.iter().map(|(why, quantities)| format!("from {}: {why}", quantities.join(", ")));
+    let whys = whys.collect::<Vec<_>>().join("; ");
+    (!whys.is_empty()).then(|| format!("no crashes extrapolated {whys}"))
 }

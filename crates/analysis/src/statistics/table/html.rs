@@ -15,6 +15,12 @@ pub fn html(title: &str, tables: &[Table]) -> String {
          <header><h1>{title}</h1></header>\n<main>\n"
     );
     for table in tables {
+        let notes = table.notes.iter().map(|note| format!("<p class=\"note\">{}</p>\n", escaped(note.as_str())));
+        let notes = notes.collect::<String>();
+        if table.columns.is_empty() {
+            page += &format!("<section>{notes}</section>\n");
+            continue;
+        }
         page += &format!(
             "<section><h2>{}</h2>\n<div class=\"scroll\" tabindex=\"0\"><table>\n<thead><tr>",
             escaped(&heading(table.title))
@@ -33,9 +39,7 @@ pub fn html(title: &str, tables: &[Table]) -> String {
             });
             page += &format!("<tr>{}</tr>\n", cells.collect::<String>());
         }
-        page += "</table></div>\n";
-        table.notes.iter().for_each(|note| page += &format!("<p class=\"note\">{}</p>\n", escaped(note.as_str())));
-        page += "</section>\n";
+        page += &format!("</table></div>\n{notes}</section>\n");
     }
     page + "</main></body></html>\n"
 }

@@ -8,6 +8,10 @@ pub fn text(tables: &[Table]) -> String {
 }
 
 fn one(table: &Table) -> String {
+    if table.columns.is_empty() {
+        // Without a table there is no title either.
+        return table.notes.iter().map(|note| format!("{note}\n")).collect();
+    }
     let rows = table.rows.iter().map(|row| row.iter().map(Cell::rounded).collect::<Vec<_>>()).collect::<Vec<_>>();
     let is_word = |column: usize| table.rows.iter().any(|row| matches!(row.get(column), Some(Cell::Text(_))));
     let width = |column: usize| {

@@ -12,6 +12,7 @@ use super::meta::beside;
 use super::table;
 use crate::Result;
 use crate::input::replay::recording::Recording;
+use crate::input::scenario_kind::SumoFile;
 
 /// Identifies a file, with what it lacks and the command that replays it.
 ///
@@ -19,6 +20,9 @@ use crate::input::replay::recording::Recording;
 /// [`crate::Error::File`] where it cannot be read; the errors of a recording that is broken at its beginning.
 pub fn inspect(path: &Path) -> Result<String> {
     let file = path.display();
+    if let Some(known) = SumoFile::of(path).filter(|known| *known != SumoFile::Recording) {
+        return Ok(format!("{file}: {}\n{}\n", known.name(), known.advice(path)));
+    }
     let mut text = String::new();
     // Writing to a String cannot fail.
     match format_of(path)? {
