@@ -149,7 +149,8 @@ def test_the_command_shows_the_run_and_logs_the_same(scenario: Copy, tmp_path: P
 @needs_xvfb
 @pytest.mark.usefixtures("display")
 def test_a_run_halts_once_at_each_severe_conflict(scenario: Copy, tmp_path: Path) -> None:
-    done = python(HALT, scenario("side"), tmp_path / "log")
+    colours = json.dumps({name: list(colour) for name, colour in SEVERITIES.items()})
+    done = python(HALT, scenario("side"), tmp_path / "log", colours)
     assert done.returncode in (0, -signal.SIGALRM), done.stderr
     halts, most = json.loads(done.stdout.splitlines()[-1])
     # Without a terminal it goes on after a while; the only conflict is no more than a caution.
@@ -175,7 +176,7 @@ sumo = _sumo.start(["-c", sys.argv[1], "--no-warnings"], gui=True)
 checker = Checker(sumo, paint=False)
 _paint.HALTS = 0.0
 halts = {"caution": 0, "critical": 0}
-painters = {least: _paint.Painter(sumo, json.loads(%r)) for least in halts}
+painters = {least: _paint.Painter(sumo, json.loads(sys.argv[3])) for least in halts}
 wait = _paint.time.sleep
 
 
@@ -198,7 +199,7 @@ while sumo.simulation.getMinExpectedNumber() > 0:
 print(json.dumps(list(halts.values())), flush=True)
 signal.alarm(2)
 _sumo.close(gui=True)
-""" % json.dumps({name: list(colour) for name, colour in SEVERITIES.items()})
+"""
 
 
 # Plays a clip, takes a picture at the worst step, and says where the two were then.

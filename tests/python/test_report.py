@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Callable
 
 import pytest
-from conftest import NETS, closecall, closecall_apart, counted, python, rows
+from conftest import NETS, Once, closecall, closecall_apart, counted, python, rows
 from report_page import ALL, PALETTE, Opened, made_up, severe
 
 Copy = Callable[[str], Path]
@@ -422,7 +422,7 @@ def test_places_have_the_names_of_their_streets(browser: Any, named_town: Path) 
 
 
 @pytest.fixture(scope="module")
-def named_town(town: Path, once: Any) -> Path:
+def named_town(town: Path, once: Once) -> Path:
     """The town's report with long names of streets in its net."""
 
     def fill(folder: Path) -> None:

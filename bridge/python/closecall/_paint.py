@@ -1,9 +1,9 @@
 """Conflicts in sumo-gui, while they last.
 
 Each of a pair has the colour of the worst severity of its conflicts, and a ring in the colour of this one: thick around
-the ego, thin around the foe, with dark edges, so that it is seen among cars of any colour. A line leads from the front of
-each to the conflict point, and their predicted paths lie on the road. Rings and lines are at least a fixed share of the
-view, so that they are seen at any zoom.
+the ego, thin around the foe, with dark edges, so that it is seen among cars of any colour. A line leads from the front
+of each to the conflict point, and their predicted paths lie on the road. Rings and lines are at least a fixed share of
+the view, so that they are seen at any zoom.
 """
 
 from __future__ import annotations
@@ -141,7 +141,7 @@ class Painter:
         self.legend = []
 
     def halt(self, pairs: list[Pair], least: str) -> None:
-        """Halt at the conflicts that are this severe for the first time, in their view, until the user presses Enter."""
+        """Halt at each conflict that is this severe for the first time, in its view, until the user presses Enter."""
         rank = list(self.colours).index
         severe = [pair for pair in pairs if rank(pair.severity) >= rank(least)]
         new = [pair for pair in severe if (pair.ego.id, pair.foe.id) not in self.halted]
@@ -286,7 +286,7 @@ class Painter:
         shown.polygons[name] = colour, width
 
     def _label(self, shown: Shown, pair: Pair, y: float) -> None:
-        """A point of interest whose type is the text that sumo-gui writes: above both rings, so that it hides neither."""
+        """A point of interest whose type is the text that sumo-gui writes: above both rings, it hides neither."""
         left = "" if pair.time_left is None else f", {pair.time_left:.1f} s left"
         text = pair.kind.replace("_", "-") + left
         poi, points = self._name(shown, "label"), self.sumo.poi
