@@ -1,27 +1,14 @@
-"""What a script does through traci of which SUMO would complain because of the checker."""
+"""Several commands of TraCI in one message."""
 
 from __future__ import annotations
 
-from functools import wraps
 from typing import Any
 
 
-def unsubscribe_at_removal(domain: Any) -> None:
-    """End the subscription of a vehicle or person before a script removes it, in all connections.
-
-    SUMO asks in the next step for all that is subscribed, and prints an error for each value of one that is gone. It
-    tells the checker of that step only afterwards.
-    """
-    kind = type(domain)
-    remove = getattr(kind, "remove", None)
-    if remove is None or hasattr(remove, "__wrapped__"):
-        return
-
-    @wraps(remove)
-    def unsubscribe_and_remove(self: Any, *words: Any, **named: Any) -> Any:
-        removed = words[0] if words else named.get("vehID", named.get("personID"))
-        if removed in self.getAllSubscriptionResults():
-            self.unsubscribe(removed)
-        return remove(self, *words, **named)
-
-    kind.remove = unsubscribe_and_remove
+def exchange(source: Any, message: bytes) -> bytes:
+    """Send commands over the connection of the module traci or of one of its connections, and return SUMO's message."""
+    connection = source.simulation._connection
+    with connection._lock:
+        connection._string = message
+        answer: bytes = connection._sendExact()._content
+    return answer

@@ -7,6 +7,7 @@ use closecall::util::units::Second;
 use closecall::{Options, Placement};
 use closecall_run::Run;
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedStr;
 use pyo3::types::PyString;
 
 use super::getters::Through;
@@ -229,7 +230,7 @@ impl Libsumo {
             let Some(lane) = net.lane(ask(&self.get.lane)?.extract::<&str>()?) else { continue };
             let position = usize::try_from(ask(&self.get.route_index)?.extract::<i64>()?).unwrap_or(0);
             let route = if has_changed || !run.knows_route(user, position) {
-                Some(simulation::route(net, &ask(&self.get.route)?)?)
+                Some(simulation::route(net, ask(&self.get.route)?.extract::<Vec<PyBackedStr>>()?))
             } else {
                 None
             };

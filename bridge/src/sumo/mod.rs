@@ -12,6 +12,7 @@ mod libsumo_domain;
 mod reading;
 mod simulation;
 mod traci;
+mod wire;
 
 use closecall::Options;
 use closecall::util::units::Second;
@@ -30,7 +31,7 @@ pub use simulation::{add_obstacles, net_of, option};
 pub enum Source {
     /// libsumo, in this process: through its getters.
     Libsumo(Box<Libsumo>),
-    /// traci, over its socket: through subscriptions.
+    /// traci, over its socket: through messages of many requests.
     Traci(Box<Traci>),
 }
 
@@ -67,7 +68,7 @@ impl Source {
     pub fn look_up_all(&mut self) {
         match self {
             Self::Libsumo(source) => source.look_up_all(),
-            Self::Traci(_) => {}
+            Self::Traci(source) => source.look_up_all(),
         }
     }
 

@@ -163,13 +163,8 @@ pub fn collisions(reported: &Bound<PyAny>) -> PyResult<Vec<[String; 2]>> {
 }
 
 /// A route as the net's edges. It ends at an edge that the net does not have.
-pub fn route(net: &Net, edges: &Bound<PyAny>) -> PyResult<Arc<[EdgeIndex]>> {
-    let mut route = Vec::new();
-    for edge in edges.try_iter()? {
-        let Some(edge) = net.edge(edge?.extract::<&str>()?) else { break };
-        route.push(edge);
-    }
-    Ok(route.into())
+pub fn route(net: &Net, edges: impl IntoIterator<Item = impl AsRef<str>>) -> Arc<[EdgeIndex]> {
+    edges.into_iter().map_while(|edge| net.edge(edge.as_ref())).collect()
 }
 
 /// The time of the current states in SUMO's own outputs: `getTime` is one step ahead of them.

@@ -1,110 +1,79 @@
-//! From traci, over its socket: everything by subscription, because each single request costs a round trip.
-//!
-//! The names of its functions are interned: Python's attribute cache keeps every name that is looked up in every step.
+//! From traci, over its socket: a few messages a step, which ask only for what changes.
+
+use std::ops::Range;
 
 use closecall::util::units::Second;
 use closecall::{Options, Placement, ProfileIndex, State, UserIndex};
 use closecall_run::Run;
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString, PyTuple};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::reading::Domain;
 use super::simulation::{self, TypeProfiles};
+use super::wire::{Answers, Of, Requests, Variable};
 
-/// A traci connection and the road users in the scene.
+/// A traci module or connection and the road users in the scene.
 pub struct Traci {
     source: Py<PyAny>,
     vehicles: TraciDomain,
     persons: TraciDomain,
+    /// The rows of the vehicles in the frame.
+    rows: Range<u32>,
     types: TypeProfiles,
     step_length: Second,
-    variable: Variables,
-    /// traci's traffic lights.
-    lights: Py<PyAny>,
-    /// Those that the run's net has too; none before the first step.
-    known_lights: Option<Vec<(u32, Py<PyString>)>>,
-}
-
-/// traci's numbers of the variables that are subscribed to.
-struct Variables {
-    position: i32,
-    angle: i32,
-    speed: i32,
-    lane: i32,
-    lane_position: i32,
-    lateral_speed: i32,
-    route_id: i32,
-    route_index: i32,
-    stop_state: i32,
-    vehicle: i32,
-    light: i32,
+    /// Whether the lists of a step do not name all that departed or parked since the last one.
+    looks_up_all: bool,
+    /// The traffic lights of the run's net that the simulation has; none before the first step.
+    known_lights: Option<Vec<(u32, String)>>,
 }
 
 /// The bit of traci's stop state for a vehicle parked off the road.
 const PARKED: i32 = 2;
 
-/// Vehicles or persons.
+/// The vehicles or the persons in the scene.
 struct TraciDomain {
-    domain: Py<PyAny>,
-    variables: Vec<i32>,
-    live: FxHashMap<String, SubscribedUser>,
-    /// The ids of the road users in the rows of the frame, from `first_row` on.
-    rows: Vec<String>,
-    first_row: u32,
+    domain: Domain,
+    of: Of,
+    live: FxHashMap<Box<str>, LiveUser>,
 }
 
 /// A road user in the scene.
-struct SubscribedUser {
+struct LiveUser {
     user: UserIndex,
     seen: bool,
-    route: Option<String>,
-    latest: Option<Py<PyDict>>,
+    is_parked: bool,
+    /// The id of the route that its path follows.
+    route: Option<Box<str>>,
+}
+
+/// SUMO's lists of the last step.
+struct Lists<'a> {
+    departed: FxHashSet<&'a str>,
+    parking: FxHashSet<&'a str>,
+    /// Whether they do not name all that departed or parked since the last frame.
+    jumped: bool,
+    /// The time of the last frame.
+    last: Option<Second>,
 }
 
 impl Traci {
     pub fn new(source: &Bound<PyAny>, options: &Options) -> PyResult<Self> {
-        let constants = source.py().import("traci.constants")?;
-        let number = |name: &str| constants.getattr(name)?.extract::<i32>();
-        let variable = Variables {
-            position: number("VAR_POSITION3D")?,
-            angle: number("VAR_ANGLE")?,
-            speed: number("VAR_SPEED")?,
-            lane: number("VAR_LANE_ID")?,
-            lane_position: number("VAR_LANEPOSITION")?,
-            lateral_speed: number("VAR_SPEED_LAT")?,
-            route_id: number("VAR_ROUTE_ID")?,
-            route_index: number("VAR_ROUTE_INDEX")?,
-            stop_state: number("VAR_STOPSTATE")?,
-            vehicle: number("VAR_VEHICLE")?,
-            light: number("TL_RED_YELLOW_GREEN_STATE")?,
-        };
-        let Variables { position, angle, speed, lane, lane_position, .. } = variable;
-        let Variables { lateral_speed, route_id, route_index, stop_state, vehicle, .. } = variable;
-        let script = source.py().import("closecall._traci")?;
-        let domain = |name: &str, variables: Vec<i32>| -> PyResult<TraciDomain> {
-            let domain = source.getattr(name)?;
-            script.call_method1("unsubscribe_at_removal", (&domain,))?;
-            Ok(TraciDomain {
-                domain: domain.unbind(),
-                variables,
-                live: FxHashMap::default(),
-                rows: Vec::new(),
-                first_row: 0,
-            })
-        };
-        let of_vehicles =
-            vec![position, angle, speed, lane, lane_position, lateral_speed, route_id, route_index, stop_state];
+        let domain = |domain, of| TraciDomain { domain, of, live: FxHashMap::default() };
         Ok(Self {
-            vehicles: domain("vehicle", of_vehicles)?,
-            persons: domain("person", vec![position, angle, speed, vehicle])?,
+            vehicles: domain(Domain::Vehicle, Of::Vehicle),
+            persons: domain(Domain::Person, Of::Person),
+            rows: 0..0,
             types: TypeProfiles::new(source, options)?,
             step_length: source.getattr("simulation")?.call_method0("getDeltaT")?.extract()?,
-            lights: source.getattr("trafficlight")?.unbind(),
+            looks_up_all: false,
             known_lights: None,
             source: source.clone().unbind(),
-            variable,
         })
+    }
+
+    pub fn look_up_all(&mut self) {
+        self.looks_up_all = true;
     }
 
     pub fn time(&self, py: Python) -> PyResult<Second> {
@@ -114,73 +83,108 @@ impl Traci {
     }
 
     pub fn pull(&mut self, py: Python, run: &mut Run, time: Second) -> PyResult<()> {
+        let source = self.source.bind(py);
+        let last = run.time();
+        let jumped = self.looks_up_all || last.is_none_or(|last| time - last > 1.5 * self.step_length);
         run.begin_step(time);
-        let simulation = self.source.bind(py).getattr(intern!(py, "simulation"))?;
-        run.set_collisions_of_sumo(simulation::collisions(&simulation.call_method0(intern!(py, "getCollisions"))?)?);
-        self.read_lights(py, run)?;
-        let types = &mut self.types;
-        self.vehicles.read(py, run, &self.variable, |run, name| types.vehicle(py, run, name))?;
-        let types = &mut self.types;
-        self.persons.read(py, run, &self.variable, |run, name| types.person(py, run, name))?;
-        let persons = self.persons.domain.bind(py);
-        simulation::edges_of_persons(run, |id| persons.call_method1(intern!(py, "getRoadID"), (id,)))
-    }
-
-    /// Reads what the traffic lights show.
-    fn read_lights(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
-        let lights = self.lights.bind(py);
-        let light = self.variable.light;
-        let known = match &mut self.known_lights {
+        let lights = match &mut self.known_lights {
             Some(known) => known,
             unknown => {
-                let known = simulation::lights(run, &lights.call_method0("getIDList")?)?;
-                for (_, id) in &known {
-                    lights.call_method1("subscribe", (id, vec![light]))?;
-                }
-                unknown.insert(known)
+                let ids = source.getattr("trafficlight")?.call_method0("getIDList")?;
+                let known = simulation::lights(run, &ids)?.into_iter();
+                unknown.insert(known.map(|(number, id)| (number, id.to_string())).collect())
             }
         };
-        if known.is_empty() {
-            return Ok(());
+        let mut requests = Requests::default();
+        use Variable::{Collisions, Departed, DepartedPersons, ParkingEnding, ParkingStarting};
+        for variable in [Collisions, ParkingStarting, ParkingEnding, Departed, DepartedPersons] {
+            requests.ask(Of::Simulation, variable, "");
         }
-        let results = lights.call_method0(intern!(py, "getAllSubscriptionResults"))?;
-        for (number, id) in known {
-            if let Ok(shown) = results.get_item(&*id) {
-                run.set_signal(*number, shown.get_item(light)?.extract::<&str>()?);
+        for of in [Of::Vehicle, Of::Person] {
+            requests.ask(of, Variable::Ids, "");
+        }
+        for (_, id) in &*lights {
+            requests.ask(Of::Light, Variable::LightState, id);
+        }
+        let message = requests.send(source)?;
+        let mut answers = Answers::of(&message);
+        run.set_collisions_of_sumo(answers.collisions()?);
+        let [starting, ending] = [answers.texts()?, answers.texts()?];
+        self.vehicles.park(&starting, true);
+        self.vehicles.park(&ending, false);
+        let parking = starting.into_iter().filter(|id| !ending.contains(id)).collect();
+        let of_vehicles = Lists { departed: answers.texts()?.into_iter().collect(), parking, jumped, last };
+        let departed = answers.texts()?.into_iter().collect();
+        let of_persons = Lists { departed, parking: FxHashSet::default(), jumped, last };
+        let [vehicles, persons] = [answers.texts()?, answers.texts()?];
+        for (number, _) in lights {
+            if let Some(shown) = answers.text()? {
+                run.set_signal(*number, shown);
             }
         }
-        Ok(())
+        let types = &mut self.types;
+        let first = run.frame.len() as u32;
+        self.vehicles.read(source, run, &vehicles, &of_vehicles, |run, name| types.vehicle(py, run, name))?;
+        self.rows = first..run.frame.len() as u32;
+        self.persons.read(source, run, &persons, &of_persons, |run, name| types.person(py, run, name))?;
+        read_details(source, run)
     }
 
     pub fn place(&mut self, py: Python, run: &mut Run, rows: &[u32]) -> PyResult<()> {
-        let domain = self.vehicles.domain.bind(py).clone();
-        for &row in rows {
-            let Some(place) = row.checked_sub(self.vehicles.first_row) else { continue };
-            let Some(id) = self.vehicles.rows.get(place as usize) else { continue };
-            let Some(live) = self.vehicles.live.get_mut(id) else { continue };
-            let (Some(net), Some(latest)) = (run.net(), &live.latest) else { continue };
-            let latest = latest.bind(py);
-            let value = |variable: i32| latest.as_any().get_item(variable);
-            let Some(lane) = net.lane(value(self.variable.lane)?.extract::<&str>()?) else { continue };
-            let route_id: String = value(self.variable.route_id)?.extract()?;
-            let position = usize::try_from(value(self.variable.route_index)?.extract::<i64>()?).unwrap_or(0);
-            let has_changed = live.route.as_ref() != Some(&route_id);
-            let route = if has_changed || !run.knows_route(live.user, position) {
-                Some(simulation::route(net, &domain.call_method1(intern!(py, "getRoute"), (id,))?)?)
-            } else {
-                None
+        let source = self.source.bind(py);
+        let rows = rows.iter().copied().filter(|row| self.rows.contains(row)).collect::<Vec<_>>();
+        let id = |run: &Run, row| run.roster.id(run.frame.user(row)).clone();
+        let mut requests = Requests::default();
+        for &row in &rows {
+            requests.ask(Of::Vehicle, Variable::RouteId, &id(run, row));
+        }
+        let of_routes = requests.send(source)?;
+        let mut answers = Answers::of(&of_routes);
+        let mut moved = Vec::new();
+        let mut requests = Requests::default();
+        for row in rows {
+            let id = id(run, row);
+            let Some(route) = answers.text()? else { continue };
+            let has_changed = self.vehicles.live.get(&*id).is_some_and(|live| live.route.as_deref() != Some(route));
+            if !has_changed && run.keeps_path(row) {
+                continue;
+            }
+            use Variable::{Lane, LanePosition, LateralSpeed, RouteIndex};
+            for variable in [Lane, RouteIndex, LanePosition, LateralSpeed] {
+                requests.ask(Of::Vehicle, variable, &id);
+            }
+            if has_changed {
+                requests.ask(Of::Vehicle, Variable::Edges, &id);
+            }
+            moved.push((row, has_changed.then_some(route)));
+        }
+        let of_places = requests.send(source)?;
+        let mut answers = Answers::of(&of_places);
+        for (row, new_route) in moved {
+            let id = id(run, row);
+            let (lane, index) = (answers.text()?, answers.integer()?);
+            let (position, lateral_speed) = (answers.number()?, answers.number()?);
+            let edges = new_route.map(|_| answers.texts()).transpose()?;
+            let (Some(net), Some(lane), Some(index)) = (run.net(), lane, index) else { continue };
+            let (Some(position), Some(lateral_speed)) = (position, lateral_speed) else { continue };
+            let Some(lane) = net.lane(lane) else { continue };
+            let route_position = usize::try_from(index).unwrap_or(0);
+            let route = match edges {
+                Some(edges) => Some(simulation::route(net, edges)),
+                None if run.knows_route(run.frame.user(row), route_position) => None,
+                None => {
+                    let mut request = Requests::default();
+                    request.ask(Of::Vehicle, Variable::Edges, &id);
+                    Some(simulation::route(net, Answers::of(&request.send(source)?).texts()?))
+                }
             };
-            live.route = Some(route_id);
-            let placement = Placement {
-                lane,
-                position: value(self.variable.lane_position)?.extract()?,
-                route,
-                route_position: position,
-                lateral_speed: value(self.variable.lateral_speed)?.extract()?,
-            };
-            run.set_placement(row, &placement);
+            if let (Some(new), Some(live)) = (new_route, self.vehicles.live.get_mut(&*id)) {
+                live.route = Some(new.into());
+            }
+            run.set_placement(row, &Placement { lane, position, route, route_position, lateral_speed });
             if let Some(lanes) = run.changed_lanes(row) {
-                let states = domain.call_method1(intern!(py, "getLaneChangeState"), (id, lanes.signum()))?;
+                let vehicles = source.getattr(intern!(py, "vehicle"))?;
+                let states = vehicles.call_method1(intern!(py, "getLaneChangeState"), (&*id, lanes.signum()))?;
                 run.set_lane_change_state(row, simulation::lane_change_state(&states)?);
             }
         }
@@ -189,76 +193,83 @@ impl Traci {
 }
 
 impl TraciDomain {
+    /// Notes that these vehicles park or no longer do.
+    fn park(&mut self, ids: &[&str], parks: bool) {
+        for id in ids {
+            if let Some(live) = self.live.get_mut(*id) {
+                live.is_parked = parks;
+            }
+        }
+    }
+
+    /// Reads the states of those with these ids, which are all that there are.
     fn read(
         &mut self,
-        py: Python,
+        source: &Bound<PyAny>,
         run: &mut Run,
-        variable: &Variables,
+        ids: &[&str],
+        lists: &Lists,
         mut profile: impl FnMut(&mut Run, &str) -> PyResult<ProfileIndex>,
     ) -> PyResult<()> {
-        let domain = self.domain.bind(py);
+        let is_vehicle = self.domain == Domain::Vehicle;
+        let asks_since = is_vehicle && lists.jumped;
+        let known = |live: &FxHashMap<Box<str>, LiveUser>, id: &str| {
+            let may_be_another = lists.jumped || lists.departed.contains(id);
+            live.get(id).filter(|_| !may_be_another).map(|live| live.is_parked)
+        };
+        let mut requests = Requests::default();
+        for id in ids {
+            let known = known(&self.live, id);
+            if known.is_none() {
+                requests.ask(self.of, Variable::Type, id);
+                if asks_since {
+                    requests.ask(self.of, Variable::Departure, id);
+                    requests.ask(self.of, Variable::StopState, id);
+                }
+            }
+            if known != Some(true) {
+                for variable in [Variable::Position3d, Variable::Angle, Variable::Speed] {
+                    requests.ask(self.of, variable, id);
+                }
+                if !is_vehicle {
+                    requests.ask(self.of, Variable::Vehicle, id);
+                }
+            }
+        }
+        let message = requests.send(source)?;
+        let mut answers = Answers::of(&message);
         for live in self.live.values_mut() {
             live.seen = false;
         }
-        self.rows.clear();
-        self.first_row = run.frame.len() as u32;
-        let ids = domain.call_method0(intern!(py, "getIDList"))?.cast_into::<PyTuple>()?;
-        let subscribe =
-            |id: &Bound<PyAny>| domain.call_method1(intern!(py, "subscribe"), (id, self.variables.clone())).map(drop);
-        let mut enter =
-            |live: &mut FxHashMap<String, SubscribedUser>, run: &mut Run, id: &Bound<PyAny>| -> PyResult<()> {
-                let type_id = domain.call_method1(intern!(py, "getTypeID"), (id,))?;
-                let profile = profile(run, type_id.extract::<&str>()?)?;
-                let user = run.enter(id.extract::<&str>()?, profile);
-                let gone = live.insert(id.extract()?, SubscribedUser { user, seen: false, route: None, latest: None });
-                gone.into_iter().for_each(|gone| run.leave(gone.user));
-                Ok(())
-            };
-        for id in ids.iter() {
-            if !self.live.contains_key(id.extract::<&str>()?) {
-                subscribe(&id)?;
-                enter(&mut self.live, run, &id)?;
+        for id in ids {
+            let known = known(&self.live, id);
+            let (mut type_id, mut departure, mut stop_state) = (None, None, None);
+            if known.is_none() {
+                type_id = answers.text()?;
+                if asks_since {
+                    (departure, stop_state) = (answers.number()?, answers.integer()?);
+                }
             }
-        }
-        let ask = || domain.call_method0(intern!(py, "getAllSubscriptionResults"));
-        let mut results = ask()?;
-        // If SUMO has ended the subscription of an id, its road user has left and another one has the id.
-        let others = ids.iter().filter(|id| results.get_item(id).is_err()).collect::<Vec<_>>();
-        if !others.is_empty() {
-            others.iter().try_for_each(&subscribe)?;
-            results = ask()?;
-            let mut others = others.iter().filter(|id| results.get_item(id).is_ok());
-            others.try_for_each(|id| enter(&mut self.live, run, id))?;
-        }
-        for id in ids.iter() {
-            let id: Bound<PyString> = id.cast_into()?;
-            let Some(live) = self.live.get_mut(id.extract::<&str>()?) else { continue };
+            let state = if known == Some(true) { None } else { self.state(&mut answers)? };
+            if let Some(type_id) = type_id {
+                let is_another = match departure {
+                    Some(departure) => lists.last.is_some_and(|last| departure > last),
+                    None => lists.departed.contains(id),
+                };
+                if is_another || !self.live.contains_key(*id) {
+                    let profile = profile(run, type_id)?;
+                    let is_parked = lists.parking.contains(id);
+                    let live = LiveUser { user: run.enter(id, profile), seen: false, is_parked, route: None };
+                    let gone = self.live.insert((*id).into(), live);
+                    gone.into_iter().for_each(|gone| run.leave(gone.user));
+                }
+            }
+            let Some(live) = self.live.get_mut(*id) else { continue };
             live.seen = true;
-            let Ok(latest) = results.get_item(&id) else { continue };
-            let latest = latest.cast_into::<PyDict>()?;
-            let value = |variable: i32| latest.as_any().get_item(variable);
-            let inside =
-                self.variables.contains(&variable.vehicle) && !value(variable.vehicle)?.extract::<&str>()?.is_empty();
-            let has_stops = self.variables.contains(&variable.stop_state);
-            let stop_state: i32 = if has_stops { value(variable.stop_state)?.extract()? } else { 0 };
-            if inside || stop_state & PARKED != 0 {
-                continue;
+            live.is_parked = stop_state.map_or(live.is_parked, |state| state & PARKED != 0);
+            if let Some(state) = state.filter(|_| !live.is_parked) {
+                run.frame.push(live.user, state);
             }
-            let point = value(variable.position)?.cast_into::<PyTuple>()?;
-            let state = State {
-                x: point.get_item(0)?.extract()?,
-                y: point.get_item(1)?.extract()?,
-                z: point.get_item(2)?.extract()?,
-                heading: simulation::heading(value(variable.angle)?.extract()?),
-                speed: value(variable.speed)?.extract()?,
-            };
-            if run.frame.push(live.user, state) {
-                self.rows.push(id.extract()?);
-            }
-            if simulation::stops(stop_state) {
-                run.set_stopped(live.user);
-            }
-            live.latest = Some(latest.unbind());
         }
         self.live.retain(|_, live| {
             if !live.seen {
@@ -268,4 +279,39 @@ impl TraciDomain {
         });
         Ok(())
     }
+
+    /// The next road user's state; none of a person in a vehicle.
+    fn state(&self, answers: &mut Answers) -> PyResult<Option<State>> {
+        let (point, angle, speed) = (answers.point()?, answers.number()?, answers.number()?);
+        let is_inside = self.domain == Domain::Person && answers.text()?.is_some_and(|vehicle| !vehicle.is_empty());
+        let (false, Some([x, y, z]), Some(angle), Some(speed)) = (is_inside, point, angle, speed) else {
+            return Ok(None);
+        };
+        Ok(Some(State { x, y, z, heading: simulation::heading(angle), speed }))
+    }
+}
+
+/// Reads which vehicles in conflict stand because of a stop, and on which edges the persons in conflict are.
+fn read_details(source: &Bound<PyAny>, run: &mut Run) -> PyResult<()> {
+    let (standing, persons) = (run.standing(), run.persons_in_conflict());
+    let mut requests = Requests::default();
+    for user in &standing {
+        requests.ask(Of::Vehicle, Variable::StopState, run.roster.id(*user));
+    }
+    for person in &persons {
+        requests.ask(Of::Person, Variable::Road, run.roster.id(*person));
+    }
+    let message = requests.send(source)?;
+    let mut answers = Answers::of(&message);
+    for user in standing {
+        if answers.integer()?.is_some_and(simulation::stops) {
+            run.set_stopped(user);
+        }
+    }
+    for person in persons {
+        if let Some(edge) = answers.text()? {
+            run.set_edge(person, edge);
+        }
+    }
+    Ok(())
 }

@@ -28,6 +28,8 @@ pub(crate) struct ParquetLog {
     next_group: usize,
     /// Each of the [`COLUMNS`] in the group; none where the file lacks it.
     columns: Vec<Option<GroupColumn>>,
+    /// The numbers of those that the file has and that are wanted.
+    read: Vec<usize>,
     /// Rows of the group.
     group: usize,
     /// The batch: rows of the group.
@@ -68,6 +70,7 @@ impl ParquetLog {
             wanted: COLUMNS.map(|column| column.presence != Presence::Snapshot),
             next_group: 0,
             columns: Vec::new(),
+            read: Vec::new(),
             group: 0,
             batch: 0..0,
             next: 0,
@@ -88,6 +91,11 @@ impl ParquetLog {
         if self.is_as_written == Some(true) {
             self.wanted = COLUMNS.map(|column| columns.contains(&column.name));
         }
+    }
+
+    /// Whether columns are left out that are not snapshots.
+    pub(crate) fn reads_only_some(&self) -> bool {
+        COLUMNS.iter().zip(self.wanted).any(|(column, is_wanted)| !is_wanted && column.presence != Presence::Snapshot)
     }
 
     /// Whether the file is not as its run wrote it.
@@ -130,8 +138,8 @@ impl ParquetLog {
         let conflict = match row {
             Some(conflict) => {
                 let place = self.next - 1 - self.batch.start;
-                for ((column, read), is_wanted) in COLUMNS.iter().zip(&self.columns).zip(self.wanted) {
-                    let Some(read) = read.as_ref().filter(|_| is_wanted) else { continue };
+                for &number in &self.read {
+                    let (column, Some(read)) = (&COLUMNS[number], &self.columns[number]) else { continue };
                     let set = read.value(place).and_then(|value| (column.set)(conflict, value));
                     set.map_err(|why| self.unfit(&format!("{}: {why}", column.name)))?;
                 }
@@ -193,6 +201,7 @@ impl ParquetLog {
             return Ok(false);
         }
         self.columns = self.places.map(|place| place.map(GroupColumn::new)).into();
+        self.read = (0..COLUMNS.len()).filter(|&number| self.wanted[number] && self.places[number].is_some()).collect();
         let rows = self.file.metadata().row_group(self.next_group).num_rows();
         (self.group, self.batch, self.next) = (usize::try_from(rows).unwrap_or_default(), 0..0, 0);
         self.next_group += 1;

@@ -88,34 +88,38 @@ impl ConflictReader {
     /// [`closecall_run::Error::File`] where it cannot be read; [`closecall_run::Error::Content`] where it is empty or cut short;
     /// [`closecall_run::Error::Line`] where its first line lacks a column.
     pub fn open(folder: &Path) -> Result<Self> {
+        match LoggedRun::read(folder) {
+            Ok(run) => Self::of(folder, Some(&run)),
+            Err(Error::Run(closecall_run::Error::File { path, source })) if source.kind() != ErrorKind::NotFound => {
+                Err(Error::file(&path, source))
+            }
+            Err(_) => Self::of(folder, None),
+        }
+    }
+
+    /// The same, with the record of the run if it can be read.
+    pub(crate) fn of(folder: &Path, run: Option<&LoggedRun>) -> Result<Self> {
         let csv = folder.join(CONFLICTS);
         let parquet = folder.join(PARQUET);
         let is_csv = csv.exists() || !parquet.exists();
-        let run = match LoggedRun::read(folder) {
-            Ok(run) => Some(run),
-            Err(Error::Run(closecall_run::Error::File { path, source })) if source.kind() != ErrorKind::NotFound => {
-                return Err(Error::file(&path, source));
-            }
-            Err(_) => None,
-        };
-        let has_result = run.as_ref().is_none_or(|run| run.summary.steps > 0);
+        let has_result = run.is_none_or(|run| run.summary.steps > 0);
         let mut file = if is_csv {
             LogFile::Csv(Box::new(CsvLog::open(&csv, !has_result)?))
         } else {
             LogFile::Parquet(Box::new(ParquetLog::open(&parquet)?))
         };
-        if run.as_ref().is_some_and(LoggedRun::logs_margins_below_zero) {
+        if run.is_some_and(LoggedRun::logs_margins_below_zero) {
             match &mut file {
                 LogFile::Csv(log) => log.demand_margins_below_zero(),
                 LogFile::Parquet(log) => log.demand_margins_below_zero(),
             }
         }
-        if let (LogFile::Csv(log), true) = (&mut file, run.as_ref().is_some_and(|run| run.csv_safe)) {
+        if let (LogFile::Csv(log), true) = (&mut file, run.is_some_and(|run| run.csv_safe)) {
             log.undo_csv_safe();
         }
         let run = run.filter(|_| has_result);
-        let counted = run.as_ref().map(LoggedRun::conflicts);
-        let digest = run.and_then(|run| run.conflicts_sha256);
+        let counted = run.map(LoggedRun::conflicts);
+        let digest = run.and_then(|run| run.conflicts_sha256.clone());
         Ok(Self { file, read: 0, counted, digest, failed: false, row: None })
     }
 
@@ -152,6 +156,14 @@ impl ConflictReader {
             log.read_only(columns);
         }
         self
+    }
+
+    /// Whether each row has all columns but the snapshots.
+    pub(crate) fn reads_whole_rows(&self) -> bool {
+        match &self.file {
+            LogFile::Csv(_) => true,
+            LogFile::Parquet(log) => !log.reads_only_some(),
+        }
     }
 
     /// The next conflict, in the memory of the last one; none after the last.

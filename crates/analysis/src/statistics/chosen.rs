@@ -6,6 +6,7 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 
+use super::together::in_order;
 use crate::logged::LoggedRun;
 use crate::variants::{Variants, repeated};
 use crate::{Error, Result};
@@ -36,26 +37,32 @@ pub(crate) struct Chosen {
 pub fn choose(folders: &[PathBuf]) -> Result<Chosen> {
     let mut runs = Vec::with_capacity(folders.len());
     let mut left_out = Vec::new();
-    for folder in folders {
-        let run = LoggedRun::read(folder)?;
+    let read = |number: usize, _: &mut dyn FnMut(())| LoggedRun::read(&folders[number]);
+    let take = |number: usize, run: Result<LoggedRun>| {
+        let (run, folder) = (run?, &folders[number]);
         if run.summary.steps == 0 {
             let why = "the run has no result: it was killed, or is still running".to_owned();
             left_out.push(LeftOutLog { folder: folder.clone(), why });
         } else {
             runs.push((Arc::from(folder.as_path()), run));
         }
-    }
+        Ok(())
+    };
+    in_order(folders.len(), read, take, |()| ())?;
     if let (true, Some(LeftOutLog { folder, why })) = (runs.is_empty(), left_out.first()) {
         return Err(Error::content(folder, why.clone()));
     }
-    let counts = without_repetitions(&runs, &mut left_out);
-    let mut counts = counts.into_iter();
-    runs.retain(|_| counts.next().unwrap_or(true));
+    let mut variants = Variants::of(&records(&runs));
+    let counts = without_repetitions(&runs, &variants, &mut left_out);
+    if counts.contains(&false) {
+        let mut counts = counts.into_iter();
+        runs.retain(|_| counts.next().unwrap_or(true));
+        variants = Variants::of(&records(&runs));
+    }
     for (folder, _) in runs.iter().filter(|(_, run)| !run.complete) {
         let why = "counted in part: the run did not reach its end".to_owned();
         left_out.push(LeftOutLog { folder: folder.to_path_buf(), why });
     }
-    let variants = Variants::of(&records(&runs));
     Ok(Chosen { runs, variants, left_out })
 }
 
@@ -64,11 +71,15 @@ fn records(runs: &[(Arc<Path>, LoggedRun)]) -> Vec<&LoggedRun> {
 }
 
 /// Whether each run counts. A run that repeats another's settings and seed does not: it found the same.
-fn without_repetitions(runs: &[(Arc<Path>, LoggedRun)], left_out: &mut Vec<LeftOutLog>) -> Vec<bool> {
+fn without_repetitions(
+    runs: &[(Arc<Path>, LoggedRun)],
+    variants: &Variants,
+    left_out: &mut Vec<LeftOutLog>,
+) -> Vec<bool> {
     let mut counts = vec![true; runs.len()];
-    for variant in Variants::of(&records(runs)).all {
+    for variant in &variants.all {
         let mut known = FxHashMap::<String, usize>::default();
-        for run in variant.runs {
+        for &run in &variant.runs {
             let Some(repetition) = repeated(&runs[run].1) else { continue };
             let Some(before) = known.insert(repetition.clone(), run) else { continue };
             let [(first, one), (second, other)] = [&runs[before], &runs[run]];

@@ -3,11 +3,8 @@
 //! As many runs are read at the same time as the machine has processors. Each conflict leaves four numbers (32 B), so 10⁷
 //! conflicts fit in 1 GiB.
 
-use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::channel;
-use std::thread;
 
 use rustc_hash::FxHashMap;
 
@@ -16,14 +13,14 @@ use super::counts::{ConflictGroup, Counts, MEASURES, Spot};
 use super::extremes::Tails;
 use super::group::By;
 use super::of_run::OfRun;
+use super::together::in_order;
 use super::weighted::WeightedEvents;
 use super::worst::WorstOf;
 use crate::filter::{ConflictFilter, set_aside_in_words};
-use crate::logged::{LoggedRun, LostRows, Progress, Reading, log_folders};
+use crate::logged::{ConflictReader, LoggedRun, LostRows, Progress, Reading, log_folders};
 use crate::variants::{Variant, Variants};
 use crate::{Error, Result};
 use closecall::detection::kind::{Kind, Severity};
-use closecall::util::threads::processors;
 use closecall_run::output::summary::SetAside;
 
 /// The result of one pass over a set of runs.
@@ -104,24 +101,28 @@ impl Collection {
         }
         let mut progress = Reading::new(conflicts, progress);
         let mut columns: Option<(PathBuf, Vec<String>)> = None;
-        let all = (0..found.runs.len()).collect::<Vec<_>>();
-        for together in all.chunks(processors()) {
-            let read = |run: usize, progress: &mut dyn FnMut(u64)| {
-                OfRun::read((run, &found.folders[run]), by, filter, worst, progress)
-            };
-            for (run, of_run) in together.iter().zip(side_by_side(together, &read, &mut progress)) {
-                let of_run = of_run?;
-                match &columns {
-                    Some((first, known)) if *known != of_run.columns => {
-                        let message = format!("its columns are not those of {}", first.display());
-                        return Err(Error::line(&of_run.path, 1, message));
-                    }
-                    Some(_) => {}
-                    None => columns = Some((of_run.path.clone(), of_run.columns.clone())),
+        let runs = std::mem::take(&mut found.runs);
+        let folders = found.folders.clone();
+        let read = |run: usize, progress: &mut dyn FnMut(u64)| {
+            let log = ConflictReader::of(&folders[run], Some(&runs[run]))?;
+            OfRun::read((run, &folders[run], log), by, filter, worst, progress)
+        };
+        let take = |run: usize, of_run: Result<OfRun>| {
+            let of_run = of_run?;
+            match &columns {
+                Some((first, known)) if *known != of_run.columns => {
+                    let message = format!("its columns are not those of {}", first.display());
+                    return Err(Error::line(&of_run.path, 1, message));
                 }
-                found.append(variant_of[*run], of_run);
+                Some(_) => {}
+                None => columns = Some((of_run.path.clone(), of_run.columns.clone())),
             }
-        }
+            found.append(variant_of[run], of_run);
+            Ok(())
+        };
+        in_order(folders.len(), read, take, |more| progress.count(more))?;
+        found.runs = runs;
+        found.worst.complete()?;
         Ok(found)
     }
 
@@ -210,28 +211,4 @@ pub(super) fn groups() -> impl Iterator<Item = (&'static str, Option<Kind>, Opti
     let kinds = Kind::ALL.into_iter().map(|kind| (kind.name(), Some(kind), None));
     let severities = Severity::ALL.into_iter().map(|severity| (severity.name(), None, Some(severity)));
     std::iter::once(("all", None, None)).chain(kinds).chain(severities)
-}
-
-/// What is read of each of these runs, each in a thread of its own; how many conflicts of a run are read more is reported
-/// to its last argument.
-fn side_by_side<T: Send>(
-    runs: &[usize],
-    read: &(impl Fn(usize, &mut dyn FnMut(u64)) -> T + Sync),
-    progress: &mut Reading,
-) -> Vec<T> {
-    if let [run] = runs {
-        return vec![read(*run, &mut |more| progress.count(more))];
-    }
-    thread::scope(|scope| {
-        let (sender, counts) = channel();
-        let begin = |run: &usize| {
-            let (run, sender) = (*run, sender.clone());
-            // Nobody counts any more once a reader has panicked.
-            scope.spawn(move || read(run, &mut |more| _ = sender.send(more)))
-        };
-        let readers = runs.iter().map(begin).collect::<Vec<_>>();
-        drop(sender);
-        counts.iter().for_each(|more| progress.count(more));
-        readers.into_iter().map(|reader| reader.join().unwrap_or_else(|panic| resume_unwind(panic))).collect()
-    })
 }

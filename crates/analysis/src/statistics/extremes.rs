@@ -12,6 +12,7 @@ use serde::Serialize;
 
 use super::gpd::{Excesses, Gpd};
 use super::gpd_posterior::crash_frequency;
+use super::together::together;
 use crate::logged::LoggedConflict;
 
 /// The least number of conflicts for an extrapolation.
@@ -91,9 +92,9 @@ impl Tails {
 
     /// The crash frequency by each quantity, from this many simulated hours; or why there is none.
     pub(crate) fn extrapolate(&self, hours: std::result::Result<f64, &str>) -> Vec<Extrapolation> {
-        let tails = QUANTITIES.iter().zip(&self.tails);
-        tails
-            .map(|(quantity, (count, smallest))| {
+        let quantities: [_; QUANTITIES.len()] = std::array::from_fn(|place| (QUANTITIES[place], &self.tails[place]));
+        let tasks = quantities.map(|(quantity, (count, smallest))| {
+            move || {
                 let sorted = smallest.clone().into_sorted_vec().into_iter().map(|value| value.0).collect::<Vec<_>>();
                 let found = hours.map_err(str::to_owned).and_then(|hours| crashes(&sorted, *count, hours));
                 let (crashes, refused) = match found {
@@ -101,8 +102,9 @@ impl Tails {
                     Err(reason) => (None, Some(reason)),
                 };
                 Extrapolation { quantity, conflicts: *count as u64, crashes, refused }
-            })
-            .collect()
+            }
+        });
+        together(tasks).into()
     }
 }
 

@@ -23,6 +23,7 @@ mod quantiles;
 pub mod rate;
 mod rates;
 pub mod table;
+mod together;
 mod variant;
 pub mod weighted;
 mod worst;

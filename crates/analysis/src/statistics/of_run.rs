@@ -21,7 +21,7 @@ use closecall_run::output::summary::SetAside;
 const EVERY: u64 = 4096;
 
 /// The columns that are counted, whatever the groups and the filter.
-const COUNTED: [&str; 13] = [
+const COUNTED: [&str; 14] = [
     "id",
     "kind",
     "severity",
@@ -35,6 +35,7 @@ const COUNTED: [&str; 13] = [
     "lane",
     "collision",
     "crash_probability",
+    "artefact",
 ];
 
 /// What one run adds.
@@ -64,26 +65,26 @@ pub(crate) struct OfRun {
     pub risk: WeightedEvents,
     /// The median of each measure.
     pub medians: [Option<f64>; MEASURES.len()],
-    /// The worst conflicts.
+    /// The worst conflicts, of which only what is counted may be read.
     pub worst: WorstOf,
     /// The most severe values.
     pub tails: Tails,
 }
 
 impl OfRun {
-    /// Reads the log of the run with this number in a folder; reports to `progress` how many conflicts more it has read.
+    /// Reads the log, in this folder, of the run with this number; reports to `progress` how many conflicts more it has read.
     ///
     /// # Errors
     /// An error that names the file and its line: missing, not a log, empty, cut short, without a column that `by` needs.
     pub fn read(
-        (run, folder): (usize, &Arc<Path>),
+        (run, folder, log): (usize, &Arc<Path>, ConflictReader),
         by: By,
         filter: &ConflictFilter,
         worst: usize,
         progress: &mut dyn FnMut(u64),
     ) -> Result<Self> {
         let counted = [&COUNTED[..], by.columns(), &filter.columns()].concat();
-        let mut reader = ConflictReader::open(folder)?.only(&counted);
+        let mut reader = log.only(&counted);
         let columns = reader.columns();
         if let Some(needed) = by.columns().iter().find(|needed| !columns.iter().any(|column| column == *needed)) {
             let message = format!("the column \"{needed}\" is missing: logs of earlier versions do not have it");
@@ -118,8 +119,7 @@ impl OfRun {
             if filter.passes(conflict) {
                 found.add(run, conflict, &by.group(conflict, filter.named.as_ref()));
                 if found.worst.takes(run, conflict) {
-                    let whole = reader.whole_row()?;
-                    whole.into_iter().for_each(|conflict| found.worst.add(run, folder, conflict));
+                    found.worst.add(run, folder, conflict.clone());
                 }
             }
         }
@@ -237,7 +237,8 @@ mod tests {
         pack_in_place(&packed).unwrap();
         let count = |log: &Arc<Path>, by: By, args: &str| {
             let filter = Args::parse_from(["closecall"].into_iter().chain(args.split_whitespace())).filter;
-            let of_run = OfRun::read((0, log), by, &filter, 5, &mut |_| ()).unwrap();
+            let of_run =
+                OfRun::read((0, log, ConflictReader::open(log).unwrap()), by, &filter, 5, &mut |_| ()).unwrap();
             assert!(of_run.passed > 0, "{args}");
             format!("{of_run:?}").replace(&*log.to_string_lossy(), "log").replace(CONFLICTS, PARQUET)
         };

@@ -24,10 +24,25 @@ pub struct Quantiles {
 impl Quantiles {
     /// The quantiles of values, whose order changes.
     pub fn of(values: &mut [f64]) -> Self {
-        let mut at = |share| select(values, share);
-        let [q05, q25, q50, q75, q95] = [0.05, 0.25, 0.5, 0.75, 0.95].map(&mut at);
+        const SHARES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
+        if let Some(last) = values.len().checked_sub(1) {
+            let ends = |share: f64| [(share * last as f64).floor() as usize, (share * last as f64).ceil() as usize];
+            let mut places = SHARES.map(ends).concat();
+            places.dedup();
+            settle(values, &places, 0);
+        }
+        let [q05, q25, q50, q75, q95] = SHARES.map(|share| quantile(values, share));
         Self { count: values.len() as u64, q05, q25, q50, q75, q95 }
     }
+}
+
+/// Puts the values at these places, which ascend from `first` on, where sorting would put them.
+fn settle(values: &mut [f64], places: &[usize], first: usize) {
+    let (before, rest) = places.split_at(places.len() / 2);
+    let Some((place, after)) = rest.split_first() else { return };
+    let (below, _, above) = values.select_nth_unstable_by(place - first, f64::total_cmp);
+    settle(below, before, first);
+    settle(above, after, place + 1);
 }
 
 /// A quantile of values in ascending order; none without values.
@@ -87,6 +102,16 @@ mod tests {
             let selected = select(&mut values, share);
             values.sort_unstable_by(f64::total_cmp);
             proptest::prop_assert_eq!(selected, quantile(&values, share));
+        }
+
+        #[test]
+        fn quantiles_together_are_those_of_sorted_values(
+            mut values in proptest::collection::vec(-5.0..5.0_f64, 0..400),
+        ) {
+            let Quantiles { q05, q25, q50, q75, q95, .. } = Quantiles::of(&mut values);
+            values.sort_unstable_by(f64::total_cmp);
+            let sorted = [0.05, 0.25, 0.5, 0.75, 0.95].map(|share| quantile(&values, share));
+            proptest::prop_assert_eq!([q05, q25, q50, q75, q95], sorted);
         }
     }
 

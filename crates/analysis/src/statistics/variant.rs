@@ -1,17 +1,19 @@
 //! Statistics of each variant: runs that agree in all settings, with rates of their own.
 
+use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 
 use super::collect::Collection;
-use super::counts::{Columns, ConflictGroup, MEASURES};
+use super::counts::{ConflictGroup, MEASURES};
 use super::group::By;
 use super::pairs::{Unit, pairs, ratio};
 use super::quantiles::Quantiles;
 use super::rate::Ratio;
 use super::rates::{Rates, Traffic};
+use super::together::together;
 use crate::variants::Variant;
 
 /// A variant and its traffic.
@@ -87,12 +89,15 @@ pub(super) fn groups(set: &mut Collection, by: By) -> Vec<GroupStatistics> {
             of_variant.push((name.to_owned(), counts, collisions, quantiles));
         };
         let collisions = groups.values().map(|group| group.collisions).sum();
-        let columns = (0..MEASURES.len()).map(|measure| of_all(groups, measure)).collect();
-        add("all", variant.runs.iter().map(|run| all[*run]).collect(), collisions, columns);
-        for name in &names {
-            let mut group = groups.remove(name).unwrap_or_default();
-            add(name, group.counts.of(&variant.runs), group.collisions, quantiles(&mut group.columns));
+        let mut groups = names.iter().map(|name| groups.remove(name).unwrap_or_default()).collect::<Vec<_>>();
+        let mut quantiles = quantiles(&mut groups).into_iter();
+        for (name, group) in names.iter().zip(groups) {
+            let of_group = quantiles.next().unwrap_or_default();
+            add(name, group.counts.of(&variant.runs), group.collisions, of_group);
         }
+        let of_all = quantiles.next().unwrap_or_default();
+        add("all", variant.runs.iter().map(|run| all[*run]).collect(), collisions, of_all);
+        of_variant.rotate_right(1);
         if found.is_empty() {
             first = of_variant.iter().map(|(name, counts, ..)| (name.clone(), counts.clone())).collect();
         }
@@ -128,13 +133,25 @@ pub(super) fn groups(set: &mut Collection, by: By) -> Vec<GroupStatistics> {
     found
 }
 
-/// Quantiles of a measure over all groups of a variant.
-fn of_all(groups: &FxHashMap<String, ConflictGroup>, measure: usize) -> Quantiles {
-    let mut values = Vec::with_capacity(groups.values().map(|group| group.columns[measure].len()).sum());
-    groups.values().for_each(|group| values.extend_from_slice(&group.columns[measure]));
-    Quantiles::of(&mut values)
-}
-
-fn quantiles(columns: &mut Columns) -> Vec<Quantiles> {
-    columns.iter_mut().map(|values| Quantiles::of(values)).collect()
+/// The quantiles of each measure over each of the groups, and then over all of them. Takes the groups' values; each measure
+/// has a thread of its own.
+fn quantiles(groups: &mut [ConflictGroup]) -> Vec<Vec<Quantiles>> {
+    let mut of_measure =
+        |measure: usize| groups.iter_mut().map(|group| std::mem::take(&mut group.columns[measure])).collect::<Vec<_>>();
+    let columns: [_; MEASURES.len()] = std::array::from_fn(&mut of_measure);
+    let by_measure = together(columns.map(|mut of_groups| {
+        move || {
+            let mut found = of_groups.iter_mut().map(|values| Quantiles::of(values)).collect::<Vec<_>>();
+            // In the memory of the largest: all values again would be much for a large set.
+            let count = of_groups.iter().map(Vec::len).sum::<usize>();
+            of_groups.sort_unstable_by_key(|values| Reverse(values.len()));
+            let mut of_groups = of_groups.into_iter();
+            let mut all = of_groups.next().unwrap_or_default();
+            all.reserve_exact(count - all.len());
+            of_groups.for_each(|values| all.extend_from_slice(&values));
+            found.push(Quantiles::of(&mut all));
+            found
+        }
+    }));
+    (0..=groups.len()).map(|group| by_measure.iter().map(|of_groups| of_groups[group]).collect()).collect()
 }

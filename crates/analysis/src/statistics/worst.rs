@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use crate::logged::{LoggedConflict, LoggedRun};
+use crate::Result;
+use crate::logged::{ConflictReader, LoggedConflict, LoggedRun};
 use crate::playback::may_have_clip;
 use crate::variants::Variants;
 use closecall::util::units::Second;
@@ -92,6 +93,29 @@ impl WorstOf {
     /// Adds the worst of other runs.
     pub fn append(&mut self, others: Self) {
         others.kept.into_iter().for_each(|kept| self.keep(kept));
+    }
+
+    /// Reads the columns that were not counted.
+    ///
+    /// # Errors
+    /// Those of reading the logs.
+    pub fn complete(&mut self) -> Result<()> {
+        let mut kept = std::mem::take(&mut self.kept).into_vec();
+        kept.sort_unstable_by_key(|kept| (kept.0.run, kept.0.conflict.id));
+        for of_run in kept.chunk_by_mut(|one, other| one.0.run == other.0.run) {
+            let mut reader = ConflictReader::open(&of_run[0].0.folder)?.only(&["id", "kind", "severity"]);
+            if reader.reads_whole_rows() {
+                continue;
+            }
+            for MildestFirst(RankedConflict { conflict, .. }) in of_run {
+                while reader.next_row()?.is_some_and(|row| row.id < conflict.id) {}
+                if let Some(whole) = reader.whole_row()? {
+                    *conflict = whole;
+                }
+            }
+        }
+        self.kept = kept.into();
+        Ok(())
     }
 
     fn keep(&mut self, conflict: MildestFirst) {

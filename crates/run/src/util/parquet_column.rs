@@ -16,12 +16,15 @@ use crate::util::panics::{self, caught};
 pub struct Batch<T: DataType> {
     reader: ColumnReaderImpl<T>,
     values: Vec<Option<T::T>>,
+    /// What the library reads into: the values that are not null, and which are.
+    present: Vec<T::T>,
+    levels: Vec<i16>,
 }
 
 impl<T: DataType> Batch<T> {
     /// The column that the reader reads; no batch is read yet.
     pub fn new(reader: ColumnReaderImpl<T>) -> Self {
-        Self { reader, values: Vec::new() }
+        Self { reader, values: Vec::new(), present: Vec::new(), levels: Vec::new() }
     }
 
     /// Reads the next rows; returns how many were read.
@@ -29,13 +32,14 @@ impl<T: DataType> Batch<T> {
     /// # Errors
     /// Those of the reader.
     pub fn read(&mut self, rows: usize) -> Result<usize, ParquetError> {
-        let mut values = Vec::with_capacity(rows);
-        let mut levels = Vec::with_capacity(rows);
-        let (read, ..) = self.reader.read_records(rows, Some(&mut levels), None, &mut values)?;
-        let mut values = values.into_iter();
-        self.values.clear();
+        let Self { reader, values, present, levels } = self;
+        present.clear();
+        levels.clear();
+        let (read, ..) = reader.read_records(rows, Some(levels), None, present)?;
+        let mut present = present.drain(..);
+        values.clear();
         // A column that cannot be null has no levels.
-        self.values.extend((0..read).map(|row| if levels.get(row) == Some(&0) { None } else { values.next() }));
+        values.extend((0..read).map(|row| if levels.get(row) == Some(&0) { None } else { present.next() }));
         Ok(read)
     }
 

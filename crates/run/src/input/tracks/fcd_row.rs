@@ -1,9 +1,11 @@
 //! One road user in one step, written as a row of SUMO's fcd-output in CSV; and the types of all of them.
 
+use std::borrow::Cow;
 use std::io::{BufWriter, Error as IoError, Write};
+use std::sync::Arc;
 
 use quick_xml::escape::escape;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 use tempfile::{NamedTempFile, TempPath};
 
 use super::matching::LaneFinder;
@@ -40,10 +42,11 @@ pub(super) struct FcdWriter<'a> {
     lanes: Option<LaneFinder<'a>>,
     /// By name: the vehicle class, length and width.
     types: FxHashMap<String, (&'static str, Metre, Metre)>,
+    /// The names of the types by class, and by length and width in bits where they are known.
+    kinds: FxHashMap<(&'static str, [Option<u64>; 2]), Arc<str>>,
     row: String,
-    /// The step that is written, and the ids in it: those of vehicles and those of persons.
-    time: Second,
-    written: [FxHashSet<String>; 2],
+    /// By id, the last step that has it: those of vehicles and those of persons.
+    written: [FxHashMap<String, Second>; 2],
     below_zero: u64,
 }
 
@@ -65,8 +68,8 @@ impl<'a> FcdWriter<'a> {
             fcd,
             lanes,
             types: FxHashMap::default(),
+            kinds: FxHashMap::default(),
             row: String::new(),
-            time: 0.0,
             written: Default::default(),
             below_zero: 0,
         })
@@ -93,12 +96,11 @@ impl<'a> FcdWriter<'a> {
             length if length > NAME.count() => return Err(longer("its id", &NAME)),
             _ => {}
         }
-        if time != self.time {
-            self.time = time;
-            self.written.iter_mut().for_each(FxHashSet::clear);
-        }
-        if !self.written[usize::from(class == PEDESTRIAN)].insert(id.to_owned()) {
-            return Err("it is there twice".to_owned());
+        let written = &mut self.written[usize::from(class == PEDESTRIAN)];
+        match written.get_mut(id) {
+            Some(last) if *last == time => return Err("it is there twice".to_owned()),
+            Some(last) => *last = time,
+            None => _ = written.insert(id.to_owned(), time),
         }
         let kind = self.kind(sample)?;
         let place = if class == PEDESTRIAN {
@@ -106,16 +108,24 @@ impl<'a> FcdWriter<'a> {
         } else {
             self.lanes.as_ref().and_then(|lanes| lanes.find(front, heading, sample.lane))
         };
-        let (lane, position) =
-            place.map_or((String::new(), String::new()), |(lane, at)| (lane.to_owned(), at.to_string()));
-        let (id, angle) = (quoted(id), 90.0 - heading.to_degrees());
-        let (x, y) = (front.x, front.y);
-        self.row.clear();
-        self.row += &if class == PEDESTRIAN {
-            format!("{time};;;;;;;;;;{id};{kind};{x};{y};{height};{angle};{speed}\n")
-        } else {
-            format!("{time};{id};{kind};{x};{y};{height};{angle};{speed};{};{position};;;;;;;\n", quoted(&lane))
-        };
+        let (before, after) = if class == PEDESTRIAN { (";;;;;;;;;;", "") } else { (";", ";") };
+        let row = &mut self.row;
+        row.clear();
+        push(row, time);
+        row.extend([before, &*quoted(id), ";", &*kind]);
+        for number in [front.x, front.y, height, 90.0 - heading.to_degrees(), speed] {
+            row.push(';');
+            push(row, number);
+        }
+        row.push_str(after);
+        if let Some((lane, position)) = place {
+            row.extend([&*quoted(lane), ";"]);
+            push(row, position);
+            row.push_str(";;;;;;;");
+        } else if class != PEDESTRIAN {
+            row.push_str(";;;;;;;;");
+        }
+        row.push('\n');
         self.fcd.write_all(self.row.as_bytes()).map_err(|error| error.to_string())
     }
 
@@ -125,15 +135,20 @@ impl<'a> FcdWriter<'a> {
     }
 
     /// The name of the type of this class and size.
-    fn kind(&mut self, sample: &Sample) -> Result<String, String> {
+    fn kind(&mut self, sample: &Sample) -> Result<Arc<str>, String> {
+        let sizes =
+            [sample.length, sample.width].map(|given| if given == 0.0 { None } else { Some(centimetres(given)) });
+        let key = (sample.class, sizes.map(|size| size.map(Metre::to_bits)));
+        if let Some(known) = self.kinds.get(&key) {
+            return Ok(known.clone());
+        }
         let usual = SumoType::of_class("", sample.class);
-        let size = |given: Metre, usual: Metre| if given == 0.0 { usual } else { (given * 100.0).round() / 100.0 };
-        let (length, width) = (size(sample.length, usual.length), size(sample.width, usual.width));
+        let (length, width) = (sizes[0].unwrap_or(usual.length), sizes[1].unwrap_or(usual.width));
         LENGTH.check("length", length)?;
         WIDTH.check("width", width)?;
         let name = format!("{} {length}x{width}", sample.class);
         self.types.entry(name.clone()).or_insert((sample.class, length, width));
-        Ok(name)
+        Ok(self.kinds.entry(key).or_insert(name.into()).clone())
     }
 
     /// Completes the recording and the file of its types.
@@ -152,7 +167,21 @@ impl<'a> FcdWriter<'a> {
     }
 }
 
+/// A size in whole centimetres.
+fn centimetres(size: Metre) -> Metre {
+    (size * 100.0).round() / 100.0
+}
+
+/// Appends a number with as many digits as tell it from all others.
+fn push(text: &mut String, number: f64) {
+    text.push_str(zmij::Buffer::new().format_finite(number));
+}
+
 /// A text as a cell of the CSV.
-fn quoted(text: &str) -> String {
-    if text.contains([';', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+fn quoted(text: &str) -> Cow<'_, str> {
+    if text.contains([';', '"', '\n', '\r']) {
+        Cow::Owned(format!("\"{}\"", text.replace('"', "\"\"")))
+    } else {
+        Cow::Borrowed(text)
+    }
 }

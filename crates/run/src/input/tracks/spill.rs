@@ -2,11 +2,12 @@
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+use std::collections::binary_heap::PeekMut;
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Result, Seek, SeekFrom, Write};
 
-/// Rows that are sorted in memory: 64 MB.
-const PART: usize = 1 << 20;
+/// Rows that are sorted in memory: 8 MB.
+const PART: usize = 1 << 17;
 
 /// A row of a table of trajectories.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,20 +92,13 @@ impl Sorter {
     pub fn sorted(mut self) -> Result<Sorted> {
         let order = self.order;
         self.rows.sort_by_key(|row| row.key(order));
-        let mut sorted = Sorted {
-            order,
-            rows: self.rows.into_iter(),
-            parts: Vec::new(),
-            heads: BinaryHeap::new(),
-            next: Vec::new(),
-        };
-        for part in self.parts {
-            sorted.parts.push(BufReader::new(part));
-            sorted.next.push(None);
-            sorted.advance(sorted.parts.len() - 1)?;
+        let parts = Parts { files: self.parts.into_iter().map(BufReader::new).collect(), rows: self.rows.into_iter() };
+        let mut sorted = Sorted { order, parts, heads: BinaryHeap::new(), next: Vec::new() };
+        for part in 0..=sorted.parts.files.len() {
+            let next = sorted.parts.next(part)?;
+            sorted.heads.extend(next.map(|row| Reverse((row.key(order), part))));
+            sorted.next.push(next);
         }
-        sorted.next.push(None);
-        sorted.advance(sorted.parts.len())?;
         Ok(sorted)
     }
 }
@@ -112,39 +106,44 @@ impl Sorter {
 /// Rows in order.
 pub(super) struct Sorted {
     order: Order,
-    /// Those that never left memory: the last part.
-    rows: std::vec::IntoIter<Row>,
-    parts: Vec<BufReader<File>>,
+    parts: Parts,
     heads: BinaryHeap<Reverse<(Key, usize)>>,
     /// By part, its next row.
     next: Vec<Option<Row>>,
 }
 
-impl Sorted {
-    fn advance(&mut self, part: usize) -> Result<()> {
-        self.next[part] = match self.parts.get_mut(part) {
-            None => self.rows.next(),
-            Some(file) => {
-                let mut bytes = [0; BYTES];
-                match file.read_exact(&mut bytes) {
-                    Ok(()) => Some(Row::of(&bytes)),
-                    Err(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => None,
-                    Err(error) => return Err(error),
-                }
-            }
-        };
-        if let Some(row) = &self.next[part] {
-            self.heads.push(Reverse((row.key(self.order), part)));
-        }
-        Ok(())
-    }
+/// Parts of the rows, each in order.
+struct Parts {
+    files: Vec<BufReader<File>>,
+    /// Those that never left memory: the last part.
+    rows: std::vec::IntoIter<Row>,
+}
 
+impl Parts {
+    /// The next row of a part.
+    fn next(&mut self, part: usize) -> Result<Option<Row>> {
+        let Some(file) = self.files.get_mut(part) else { return Ok(self.rows.next()) };
+        let mut bytes = [0; BYTES];
+        match file.read_exact(&mut bytes) {
+            Ok(()) => Ok(Some(Row::of(&bytes))),
+            Err(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+impl Sorted {
     /// The next row; none at the end.
     pub fn next(&mut self) -> Result<Option<Row>> {
-        let Some(Reverse((_, part))) = self.heads.pop() else { return Ok(None) };
-        let row = self.next[part].take();
-        self.advance(part)?;
-        Ok(row)
+        let Some(mut head) = self.heads.peek_mut() else { return Ok(None) };
+        let part = head.0.1;
+        let next = self.parts.next(part)?;
+        // Most often the next row is of the same part.
+        match &next {
+            Some(row) => head.0.0 = row.key(self.order),
+            None => _ = PeekMut::pop(head),
+        }
+        Ok(std::mem::replace(&mut self.next[part], next))
     }
 }
 
