@@ -7,7 +7,7 @@ use closecall::util::units::Second;
 /// The result of the library's functions.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// An error of what is made of logs. Its `Display` is one line for standard error.
+/// An error of the analysis of logs. Its `Display` is one line for standard error.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -29,7 +29,7 @@ pub enum Error {
     /// A log lacks rows that its run counted; what is there was used.
     #[error("{0}")]
     Lost(String),
-    /// An output would replace a file that it is made of.
+    /// An output would replace one of its inputs.
     #[error("--out would be written over {}", .0.display())]
     WouldReplace(PathBuf),
     /// The period of a filter ends before it begins.
@@ -47,7 +47,7 @@ pub enum Error {
     /// Two runs of a sweep have the same name.
     #[error("two runs would both be called {0}")]
     SameName(String),
-    /// A sweep has no run of this number, but so many.
+    /// The number of a run that a sweep does not have, and how many it has.
     #[error("no run has the number {0}: they are 1 to {1}")]
     NoRun(usize, usize),
     /// The run of a seed failed, and why.

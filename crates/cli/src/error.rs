@@ -10,16 +10,16 @@ pub enum Error {
     /// A run or a recording failed, or a file cannot be used.
     #[error(transparent)]
     Run(#[from] closecall_run::Error),
-    /// What is made of logs failed.
+    /// The analysis of logs failed.
     #[error(transparent)]
     Analysis(closecall_analysis::Error),
     /// A word of the command line cannot be used.
     #[error("{0}")]
     Value(String),
-    /// So many of all measured values exceed their bounds.
+    /// How many of all measured values exceed their bounds.
     #[error("{0} of {1} bounds are exceeded")]
     Exceeded(usize, usize),
-    /// The user ended a sweep after so many of all runs.
+    /// The user ended a sweep: how many of all runs are done.
     #[error("interrupted after {0} of {1} runs; repeat the command to continue")]
     Paused(usize, usize),
 }

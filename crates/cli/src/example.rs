@@ -54,7 +54,7 @@ impl Example {
     }
 }
 
-/// Writes the files, none over one that is there, and prints what to do next.
+/// Writes the files, replacing none, and prints what to do next.
 pub fn run(arguments: &ExampleArgs) -> Result<()> {
     let files = arguments.name.files();
     let name = arguments.name.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default();

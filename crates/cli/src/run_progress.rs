@@ -1,4 +1,4 @@
-//! The progress of many runs: a bar on a terminal, elsewhere a line now and then. Those of a study say beforehand what they
+//! The progress of many runs: a bar on a terminal, elsewhere a line now and then. A study states beforehand what its runs
 //! cost, by the first run that ends.
 
 use std::io::IsTerminal;
@@ -14,7 +14,7 @@ const PERIOD: Duration = Duration::from_secs(30);
 /// SUMO's own step length, in s, of a run that names none.
 const SUMOS_STEP: f64 = 1.0;
 
-/// How much is said of many runs.
+/// How much is printed about many runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Telling {
     /// Only errors.
@@ -41,7 +41,7 @@ pub(super) struct RunProgress {
 }
 
 impl RunProgress {
-    /// Of these runs, so many at the same time; others are done already.
+    /// These runs, this number at the same time; others are done already.
     pub fn new(missing: &[&Task], before: usize, at_once: usize, own_step: Option<f64>, telling: Telling) -> Self {
         let all = before + missing.len();
         let on_terminal = telling != Telling::Nothing && std::io::stderr().is_terminal();
@@ -64,7 +64,7 @@ impl RunProgress {
         it
     }
 
-    /// A run has ended; `failure` is what to say of it.
+    /// A run has ended; `failure` is what to print about it.
     pub fn count(&mut self, name: &str, failure: Option<String>) {
         self.done += 1;
         if let Some(failure) = failure {

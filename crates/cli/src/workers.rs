@@ -15,7 +15,7 @@ pub enum Workers {
 }
 
 impl Workers {
-    /// The runs at the same time, as far as that is known.
+    /// The number of runs at the same time, if it is known.
     pub(crate) fn at_once(&self) -> usize {
         match self {
             Self::Local(processes) => *processes,

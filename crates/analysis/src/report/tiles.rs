@@ -44,7 +44,7 @@ impl TileUrl {
     /// What the page needs: the address, the attribution, and where the net's metres are on the web mercator square.
     ///
     /// # Errors
-    /// [`Error::Value`] where there is no net, or its places have no longitude and latitude.
+    /// [`Error::Value`] without a net, or where its places have no longitude and latitude.
     pub(super) fn json(&self, net: Option<&Net>) -> Result<Value> {
         let net = net.ok_or_else(|| Error::Value("--tiles: the report has no net for a background map".to_owned()))?;
         let square = square(net).ok_or_else(|| {

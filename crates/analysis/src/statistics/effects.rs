@@ -118,7 +118,7 @@ impl Effects {
             rows.push(row("all", "collisions", runs.each_ref().map(|runs| runs.iter().map(collisions).collect())));
         }
         let risk = row("all", RISK, all.each_ref().map(|set| set.risk.per_run(set.runs.len())));
-        // It is no count: the interval of one is none of its own.
+        // It is not a count, so a count's interval does not apply to it.
         let is_counted = risk.ratio.is_some_and(|ratio| ratio.method == IntervalMethod::PoissonExact);
         rows.push(if is_counted { Effect { ratio: None, ..risk } } else { risk });
         rows.extend(Severity::ALL.map(|severity| row("severity", severity.name(), counts(None, Some(severity)))));

@@ -74,7 +74,7 @@ pub fn check_is_scenario(path: &Path) -> Result<()> {
     refuse(path, "not a configuration", |file| file != SumoFile::Configuration)
 }
 
-/// Refuses a file of SUMO that is no recording.
+/// Refuses a file of SUMO other than a recording.
 ///
 /// # Errors
 /// [`Error::Content`] that says what the file is and what to pass.

@@ -38,7 +38,7 @@ impl RunOptions {
         settings.options.checked()
     }
 
-    /// Which name replaces that of a setting; none where it is no old name.
+    /// Which name replaces that of a setting; none for a current name.
     pub fn old_name(name: &str) -> Option<String> {
         old_names::remark(&SettingsParser::command(), name)
     }

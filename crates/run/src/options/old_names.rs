@@ -1,11 +1,11 @@
-//! Old names of options. clap accepts them as hidden aliases; here is what their user is told.
+//! Old names of options. clap accepts them as hidden aliases; this file has what their user reads.
 
 use clap::Command;
 
-/// An option that is no alias, because the file that it writes has another name too, and the option that replaces it.
+/// An option without an alias, because the file that it writes has another name too, and the option that replaces it.
 const LOG_ENCOUNTERS: (&str, &str) = ("log-encounters", "log-series");
 
-/// Which name replaces the one in a word such as `--jobs=2`, or in a setting such as `keep_all`; none where it is no old name
+/// Which name replaces the one in a word such as `--jobs=2`, or in a setting such as `keep_all`; none unless it is an old name
 /// of an option of this command.
 pub fn remark(command: &Command, word: &str) -> Option<String> {
     let typed = word.split('=').next().unwrap_or_default();

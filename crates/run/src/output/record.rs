@@ -91,7 +91,7 @@ mod tests {
     #[test]
     fn the_codes_of_remarks_are_documented() {
         let page = include_str!("../../../../docs/log.md");
-        // A later version's code is not known, and the place of an earlier log is said only.
+        // A later version's code is not known, and the place of an earlier log is only printed.
         let written = |code: &&RemarkCode| !matches!(code, RemarkCode::Other | RemarkCode::EarlierLog);
         for code in RemarkCode::VARIANTS.iter().filter(written) {
             assert!(page.contains(&format!("`{}`", code.name())), "{code:?}");

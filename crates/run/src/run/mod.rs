@@ -85,7 +85,7 @@ pub struct Run {
     type_settings: Vec<(String, String)>,
     /// How long a step lasts: as the source says, or else the time between the first two steps.
     step_length: Option<Second>,
-    /// What is said of the net, once it was asked for.
+    /// The remarks on the net, once they were asked for.
     net_remarks: OnceLock<Vec<Remark>>,
     summary: Summary,
     ordinary_driving: OrdinaryDriving,

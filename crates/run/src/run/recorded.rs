@@ -41,7 +41,7 @@ pub struct Ending {
     pub error: Option<String>,
     /// What the source skipped.
     pub left_out: Vec<LeftOut>,
-    /// What it has to say of the scenario or the recording.
+    /// Its remarks on the scenario or the recording.
     pub remarks: Vec<Remark>,
     /// Each part of the work and the seconds it took.
     pub spent: Vec<(&'static str, f64)>,

@@ -70,7 +70,7 @@ function enteringByPlace() {
   // Of a period only the conflicts are known, not the traffic; and plans are not one traffic.
   if (isOfPeriod() || plansShown().length) return entered;
   const runs = shownRuns();
-  // A run of an earlier version, or one that was killed, has no such counts.
+  // A run of an earlier version, or a killed run, has no such counts.
   if (!runs.every((run) => run.summary?.steps > 0 && run.summary.entered)) return entered;
   for (const run of runs) {
     for (const [junction, vehicles] of Object.entries(run.summary.entered)) {

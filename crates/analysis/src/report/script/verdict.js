@@ -57,7 +57,7 @@ function showPlans(rows, plans) {
   const heading = (text, scope, look) => make("th", { scope, className: scope === "col" ? "number" : "" },
     ...(look ? [sign(0, `var(--${look})`), " "] : []), text);
   const corner = make("th", { scope: "col", textContent: "Plan" });
-  // Side by side as long as they fit; of many each is a line.
+  // Side by side while they fit; beyond that, a line each.
   const [head, lines] = shown.length <= MOST_PLANS
     ? [shown.map((_, place) => heading(planNames()[place], "col")),
       names.map(([name, look]) => make("tr", {}, heading(name, "row", look), ...shown.map((_, place) => numberCell(value(place, name)))))]

@@ -9,7 +9,7 @@ pub fn text(tables: &[Table]) -> String {
 
 fn one(table: &Table) -> String {
     if table.columns.is_empty() {
-        // Without a table there is no title either.
+        // A title appears only with its table.
         return table.notes.iter().map(|note| format!("{note}\n")).collect();
     }
     let rows = table.rows.iter().map(|row| row.iter().map(Cell::rounded).collect::<Vec<_>>()).collect::<Vec<_>>();
