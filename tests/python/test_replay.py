@@ -100,7 +100,7 @@ def test_truncated_gzip_and_csv_recordings_are_detected(scenario: Copy, tmp_path
     ("text", "expected"),
     [
         ("", "the file is empty"),
-        ("<routes/>", "not an fcd-output"),
+        ("<routes/>", "it is a SUMO route file, not a recording"),
         ("a;b\n1;2\n", "timestep_time"),
         ('<fcd-export><timestep time="0"><vehicle id="a" x="1"/></timestep></fcd-export>', '"a" has no attribute y'),
         ("timestep_time;vehicle_id;vehicle_x\n", "vehicle_y"),
