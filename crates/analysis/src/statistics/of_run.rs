@@ -237,8 +237,9 @@ mod tests {
         pack_in_place(&packed).unwrap();
         let count = |log: &Arc<Path>, by: By, args: &str| {
             let filter = Args::parse_from(["closecall"].into_iter().chain(args.split_whitespace())).filter;
-            let of_run =
+            let mut of_run =
                 OfRun::read((0, log, ConflictReader::open(log).unwrap()), by, &filter, 5, &mut |_| ()).unwrap();
+            of_run.worst.complete().unwrap();
             assert!(of_run.passed > 0, "{args}");
             format!("{of_run:?}").replace(&*log.to_string_lossy(), "log").replace(CONFLICTS, PARQUET)
         };

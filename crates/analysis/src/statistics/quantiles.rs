@@ -28,6 +28,8 @@ impl Quantiles {
         if let Some(last) = values.len().checked_sub(1) {
             let ends = |share: f64| [(share * last as f64).floor() as usize, (share * last as f64).ceil() as usize];
             let mut places = SHARES.map(ends).concat();
+            // Of few values the ends of two shares may be the same.
+            places.sort_unstable();
             places.dedup();
             settle(values, &places, 0);
         }
