@@ -109,6 +109,7 @@ fn attach(
     interrupts.report();
     let recorded = RecordedRun::open(run, record, folder, &request.outputs)?;
     let (recorded, outcome) = session.run_to_end(Box::new(recorded));
+    let outcome = outcome.and_then(|()| session.write_roll_out());
     close(*recorded, request, outcome, &session.spent())
 }
 

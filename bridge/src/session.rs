@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use crate::error::message;
 use crate::paint::Painter;
 use crate::step_times::{StepTimes, TimedPart};
-use crate::sumo::Source;
+use crate::sumo::{Source, Steering};
 
 /// The least time for which sumo-gui shows a step: libsumo's own does not wait.
 const SHOWN: Duration = Duration::from_millis(50);
@@ -39,6 +39,8 @@ pub struct Session<'a, 'py> {
     spent: StepTimes,
     /// Whether the last step is still to be finished.
     is_unfinished: bool,
+    /// What drivers do wrong, in a roll-out.
+    steering: Option<Steering<'py>>,
     /// Finishes the last step beside SUMO's next one.
     helper: Option<Helper<Box<RecordedRun>, Finished>>,
 }
@@ -90,6 +92,9 @@ impl<'a, 'py> Session<'a, 'py> {
     ) -> PyResult<Self> {
         let simulation = Simulation::of(sumo)?;
         let finish = |recorded: &mut Box<RecordedRun>| finish(&mut recorded.run);
+        let steering = request.roll_out.clone().map(|asked| Steering::new(sumo, asked)).transpose()?;
+        // What a driver does next depends on the step that has just ended.
+        let may_help = steering.is_none() && has_second_processor(request.threads);
         Ok(Self {
             begin: simulation.time()?,
             end: simulation.end()?,
@@ -100,7 +105,8 @@ impl<'a, 'py> Session<'a, 'py> {
             step_length: step_length.unwrap_or_default(),
             spent: StepTimes::default(),
             is_unfinished: false,
-            helper: if has_second_processor(request.threads) { Helper::new(finish) } else { None },
+            steering,
+            helper: if may_help { Helper::new(finish) } else { None },
         })
     }
 
@@ -183,7 +189,17 @@ impl<'a, 'py> Session<'a, 'py> {
             py.detach(|| std::thread::sleep(shown.saturating_sub(started.elapsed())));
             self.spent.add(TimedPart::Painting, &mut since);
         }
+        if let Some(steering) = &mut self.steering
+            && steering.step(run)?
+        {
+            return Ok(false);
+        }
         Ok(self.simulation.goes_on()?)
+    }
+
+    /// Writes what came of a roll-out beside its log.
+    pub fn write_roll_out(&self) -> Result<()> {
+        self.steering.as_ref().map_or(Ok(()), |steering| steering.write(&self.request.out))
     }
 
     /// Finishes the last step, unless that is done already.

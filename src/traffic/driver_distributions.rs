@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::braking::LateBraking;
 use crate::options::{DriverModel, DriverOptions};
-use crate::util::units::{MetrePerSecondSquared, Second};
+use crate::util::units::{MetrePerSecondSquared, Probability, Second};
 
 /// Nodes of the quadrature on a range.
 const COUNT: usize = 16;
@@ -101,6 +101,26 @@ impl Driver {
         if deviation > 0.0 { libm::erfc(above / (deviation * SQRT_2)) / 2.0 } else { f64::from(above < 0.0) }
     }
 
+    /// The time within which this share of such drivers has responded.
+    pub fn response_within(&self, share: Probability) -> Second {
+        let [soonest, latest] = self.responses;
+        if self.is_punctual() {
+            self.response[0].exp()
+        } else {
+            quantile([soonest, latest], |time| 1.0 - self.responds_later_than(time) < share)
+        }
+    }
+
+    /// The deceleration that this share of their vehicles does not reach.
+    pub fn deceleration_of(&self, share: Probability) -> MetrePerSecondSquared {
+        let [least, most] = self.reach();
+        if least < most {
+            quantile([least, most], |deceleration| self.reaches([least, deceleration]) < share)
+        } else {
+            least
+        }
+    }
+
     /// The probability that its vehicle brakes too weakly, if `is_too_weak` is true up to some deceleration.
     pub(crate) fn brakes_too_weakly(&self, is_too_weak: impl Fn(MetrePerSecondSquared) -> bool) -> f64 {
         /// The deceleration is then right to a millionth of the range.
@@ -112,12 +132,12 @@ impl Driver {
         if is_too_weak(most) {
             return 1.0;
         }
-        let [mut weak, mut strong] = [least, most];
-        for _ in 0..HALVINGS {
-            let middle = (weak + strong) / 2.0;
-            *(if is_too_weak(middle) { &mut weak } else { &mut strong }) = middle;
-        }
-        self.reaches([least, (weak + strong) / 2.0])
+        self.reaches([least, halved([least, most], HALVINGS, is_too_weak)])
+    }
+
+    /// The time in which its deceleration builds up; none if that is a matter of the vehicle's brakes.
+    pub fn build_up(&self) -> Option<Second> {
+        self.build_up
     }
 
     /// How it brakes with a deceleration, in a vehicle that brakes like this.
@@ -169,6 +189,20 @@ impl Driver {
     }
 }
 
+/// The value in a range up to which `is_below` is true, to the last digit.
+fn quantile(range: [f64; 2], is_below: impl Fn(f64) -> bool) -> f64 {
+    halved(range, f64::MANTISSA_DIGITS, is_below)
+}
+
+/// The same after this number of halvings.
+fn halved([mut low, mut high]: [f64; 2], halvings: u32, is_below: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..halvings {
+        let middle = f64::midpoint(low, high);
+        *(if is_below(middle) { &mut low } else { &mut high }) = middle;
+    }
+    f64::midpoint(low, high)
+}
+
 /// Gauss–Legendre nodes on a range, ascending, weighted with exp(−((a − mean) / deviation)² / 2).
 fn weighted(mean: f64, deviation: f64, [low, high]: [MetrePerSecondSquared; 2]) -> [Weighted; COUNT] {
     std::array::from_fn(|index| {
@@ -194,6 +228,18 @@ mod tests {
         assert!((driver.responds_later_than(median) - 0.5).abs() < 1e-12);
         assert_eq!(driver.responds_later_than(-1.0), 1.0);
         assert_eq!(driver.responds_later_than(f64::INFINITY), 0.0);
+    }
+
+    #[test]
+    fn quantiles_invert_the_distributions() {
+        let none = DriverOptions::default();
+        let driver = Driver::new(DriverModel::Distracted, &none, &none, 0.8);
+        for share in [0.001, 0.1, 0.5, 0.9, 0.999] {
+            assert!((1.0 - driver.responds_later_than(driver.response_within(share)) - share).abs() < 1e-9);
+            assert!((driver.reaches([driver.reach()[0], driver.deceleration_of(share)]) - share).abs() < 1e-9);
+        }
+        let fixed = Driver::new(DriverModel::Automated, &none, &none, 1.0);
+        assert_eq!((fixed.response_within(0.9), fixed.deceleration_of(0.1)), (0.35_f64.ln().exp(), 6.0));
     }
 
     #[test]

@@ -11,6 +11,7 @@ mod libsumo;
 mod libsumo_domain;
 mod reading;
 mod simulation;
+mod steer;
 mod traci;
 mod wire;
 
@@ -25,7 +26,9 @@ use self::libsumo::Libsumo;
 use self::traci::Traci;
 
 pub use identity::Identity;
+use simulation::is_ballistic;
 pub use simulation::{add_obstacles, net_of, option};
+pub use steer::Steering;
 
 /// A simulation that is being read.
 pub enum Source {
@@ -47,8 +50,7 @@ impl Source {
         if option(source, "lateral-resolution")?.parse::<f64>().is_ok_and(|width| width > 0.0) {
             run.set_sublane(true);
         }
-        let is_ballistic = option(source, "step-method.ballistic")? == "true";
-        run.set_averaged_over(if is_ballistic { 0.0 } else { 1.0 });
+        run.set_averaged_over(if is_ballistic(source)? { 0.0 } else { 1.0 });
         Ok(if is_libsumo(source) {
             Self::Libsumo(Box::new(Libsumo::new(source, options)?))
         } else {

@@ -25,6 +25,11 @@ pub fn option(source: &Bound<PyAny>, name: &str) -> PyResult<String> {
     simulation.call_method1("getOption", (name,)).map_err(unknown)?.extract()
 }
 
+/// Whether SUMO moves road users by the mean of two speeds, not by the later one.
+pub fn is_ballistic(source: &Bound<PyAny>) -> PyResult<bool> {
+    Ok(option(source, "step-method.ballistic")? == "true")
+}
+
 /// The net that the simulation runs on.
 pub fn net_of(source: &Bound<PyAny>) -> PyResult<Option<Arc<Net>>> {
     let file = option(source, "net-file")?;

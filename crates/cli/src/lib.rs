@@ -31,6 +31,7 @@ mod study;
 mod study_scenario;
 mod sumo;
 mod sweep;
+mod whatif;
 mod workers;
 
 use std::ffi::OsString;
@@ -72,6 +73,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8 
         Command::Inspect(arguments) => inspect::run(&arguments).map(|()| 0),
         Command::Example(arguments) => example::run(&arguments).map(|()| 0),
         Command::Extract(arguments) => extract::run(&arguments, &settings::known(&command()), sumo).map(|()| 0),
+        Command::WhatIf(arguments) => whatif::run(&arguments, &settings::known(&command()), sumo),
         Command::Export(arguments) => export::run(arguments).map(|()| 0),
         Command::Report(arguments) => report::run(&arguments).map(|()| 0),
         Command::Plot(arguments) => plot::run(&arguments).map(|()| 0),

@@ -13,7 +13,7 @@ use closecall_run::options::{OptionsFile, old_names};
 
 use super::plot;
 use super::sweep;
-use super::{stress, study};
+use super::{stress, study, whatif};
 
 #[derive(Parser)]
 #[command(name = "closecall", version, about, args_override_self = true)]
@@ -59,6 +59,9 @@ pub(super) enum Command {
     /// Extract a conflict as a standalone scenario and a test
     #[command(args_override_self = true)]
     Extract(extract::ExtractArgs),
+    /// Roll conflicts out again with drivers that err: would they have crashed?
+    #[command(name = "whatif", args_override_self = true)]
+    WhatIf(whatif::WhatIfArgs),
     /// Write a log in the format of another tool: GeoJSON, GeoParquet, GeoPackage, sumo-gui, device.ssm
     #[command(args_override_self = true)]
     Export(export::ExportArgs),

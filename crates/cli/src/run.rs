@@ -13,6 +13,7 @@ use closecall::util::threads::default_threads;
 use closecall::util::units::Second;
 use closecall_run::Error;
 use closecall_run::input::{scenario_kind, sumo_files};
+use closecall_run::run::roll_out::RollOut;
 use closecall_run::util::input_file;
 
 /// A SUMO scenario and how to run it.
@@ -53,6 +54,9 @@ pub(crate) struct RunArgs {
     /// SUMO configuration file, under SUMO's own option name.
     #[arg(short = 'c', long, value_name = "FILE", conflicts_with = "scenario")]
     configuration_file: Option<PathBuf>,
+    /// What drivers do wrong, as JSON: the runs of `closecall whatif` have it.
+    #[arg(long, value_name = "JSON", value_parser = RollOut::parse, hide = true, conflicts_with = "gui")]
+    roll_out: Option<RollOut>,
     #[command(flatten)]
     pub(super) check: CheckArgs,
     /// Options passed on to SUMO.
@@ -107,5 +111,6 @@ pub(super) fn request(arguments: &RunArgs) -> Result<RunRequest> {
         outputs: arguments.check.outputs.clone(),
         options,
         sumo_words,
+        roll_out: arguments.roll_out.clone(),
     })
 }

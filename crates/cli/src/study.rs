@@ -111,5 +111,6 @@ fn recorded(scenario: &Path, recording: &Path, end: Second) -> RunRequest {
         outputs: OutputFiles::default(),
         options: RunOptions::default(),
         sumo_words: args.map(str::to_owned).to_vec(),
+        roll_out: None,
     }
 }

@@ -63,7 +63,7 @@ impl ScenarioArgs {
         sumo: Option<Sumo>,
         parse_run: &ParseRun,
     ) -> Result<u8> {
-        let Some(sumo) = sumo else { return no_sumo().map(|()| 0) };
+        let Some(mut sumo) = sumo else { return no_sumo().map(|()| 0) };
         let default_out = default_folder(scenario, RESULTS);
         let out = absolute(out.unwrap_or(&default_out))?;
         // Opened here so that an error carries the operating system's own message.
@@ -85,7 +85,7 @@ impl ScenarioArgs {
         let telling = if missing.is_empty() { Telling::Nothing } else { Telling::Cost };
         let step = sumos_value(&own, "step-length").and_then(|step| step.parse().ok());
         let progress = RunProgress::new(&missing, done, workers.at_once(), step, telling);
-        distribute(sumo, &workers, &missing, progress, &out.join(UNFINISHED))?;
+        distribute(&mut sumo, &workers, &missing, progress, &out.join(UNFINISHED))?;
         let failed = runs.missing()?.into_iter().map(|task| task.name.clone()).collect::<Vec<_>>();
         let study = Study::read(plan, &runs.tasks, &failed, seeds.to_string(), self.accuracy)?;
         let name = scenario.file_name().unwrap_or_default().to_string_lossy().into_owned();

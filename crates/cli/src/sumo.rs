@@ -11,6 +11,7 @@ use closecall_run::RunOptions;
 use closecall_run::output::folder::LogFolder;
 use closecall_run::output::formats::OutputFiles;
 use closecall_run::output::summary::Summary;
+use closecall_run::run::roll_out::RollOut;
 
 use super::workers::Distribute;
 
@@ -61,6 +62,8 @@ pub struct RunRequest {
     pub options: RunOptions,
     /// Words for SUMO, after the program's name.
     pub sumo_words: Vec<String>,
+    /// What drivers do wrong, if this is a roll-out of `closecall whatif`.
+    pub roll_out: Option<RollOut>,
 }
 
 /// How to show a run in sumo-gui.

@@ -94,11 +94,12 @@ impl Passed {
 /// fastest. Clips of thousands of runs are made only if they are asked for.
 const DEFAULTS: [(&str, &str); 2] = [("threads", "1"), ("log-clips", "none")];
 /// Arguments of `closecall run` that a sweep sets itself or has no use for.
-const OWN: [&str; 13] = [
+const OWN: [&str; 14] = [
     "scenario",
     "configuration_file",
     "gui",
     "label",
+    "roll_out",
     "pause_at",
     "quit_on_end",
     "out",
@@ -184,7 +185,7 @@ impl FromArgMatches for Passed {
 
 /// Does the missing runs; returns the exit status, 1 if some failed.
 pub fn run(arguments: SweepArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Result<u8> {
-    let Some(sumo) = sumo else { return no_sumo().map(|()| 0) };
+    let Some(mut sumo) = sumo else { return no_sumo().map(|()| 0) };
     let default_out = default_folder(&arguments.scenario, RESULTS);
     let out = absolute(arguments.out.as_deref().unwrap_or(&default_out))?;
     // Opened here so that an error carries the operating system's own message.
@@ -211,7 +212,7 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Re
     };
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::Progress };
     let progress = RunProgress::new(&missing, done, workers.at_once(), None, telling);
-    let failed = distribute(sumo, &workers, &missing, progress, &unfinished)?;
+    let failed = distribute(&mut sumo, &workers, &missing, progress, &unfinished)?;
     if !arguments.quiet {
         if arguments.out.is_none() {
             print_if_elsewhere(&default_out, &arguments.scenario, RESULTS)?;
@@ -244,7 +245,7 @@ fn filter_in(file: &Path) -> Option<PathBuf> {
 
 /// Has the missing runs done, with their logs in a working folder until then; returns how many failed.
 pub(super) fn distribute(
-    sumo: Sumo,
+    sumo: &mut Sumo,
     workers: &Workers,
     missing: &[&Task],
     mut progress: RunProgress,

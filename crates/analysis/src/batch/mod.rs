@@ -1,5 +1,7 @@
-//! Batches of runs: sweeps over seeds and options, regression tests on fixed nets, and the runs that cut a conflict out.
+//! Batches of runs: sweeps over seeds and options, regression tests on fixed nets, the runs that cut a conflict out, and those
+//! that ask what would have happened otherwise.
 
 pub mod extract;
 pub mod regress;
 pub mod sweep;
+pub mod whatif;

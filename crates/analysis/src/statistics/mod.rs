@@ -22,6 +22,7 @@ pub mod planning;
 mod quantiles;
 pub mod rate;
 mod rates;
+pub(crate) mod share;
 pub mod table;
 mod together;
 mod variant;

@@ -10,6 +10,7 @@ mod obstacles;
 mod ordinary_driving;
 pub mod recorded;
 mod results;
+pub mod roll_out;
 mod setup;
 pub mod step;
 mod touching_lanes;

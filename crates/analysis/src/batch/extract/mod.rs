@@ -7,11 +7,11 @@
 //! whole: SUMO draws drivers' random numbers by the places of lanes in the net, so a part of it would have other drivers.
 
 mod clip;
-mod configuration;
+pub(in crate::batch) mod configuration;
 mod extracted;
 mod readme;
-mod source;
-mod toml_options;
+pub(in crate::batch) mod source;
+pub(in crate::batch) mod toml_options;
 
 use std::ffi::OsString;
 use std::fs;
@@ -39,7 +39,7 @@ use source::{Period, check_can_be_run};
 const SAME_MARGIN: Metre = 1e-6;
 
 /// SUMO's options for a state from which a run goes on exactly: all digits of numbers, persons, and random numbers.
-const WHOLE_STATE: [&str; 5] =
+pub(in crate::batch) const WHOLE_STATE: [&str; 5] =
     ["--save-state.precision", "17", "--save-state.rng", "--save-state.transportables", "--save-state.constraints"];
 
 /// What a conflict is cut out with.

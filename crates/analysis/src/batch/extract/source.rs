@@ -53,16 +53,21 @@ pub struct Period {
 }
 
 impl Period {
-    /// That of a conflict from `begin` to `end`.
+    /// That of a conflict from `begin` to `end`, with what is before and after it.
     pub fn of(run: &LoggedRun, begin: Second, end: Second) -> Self {
+        Self::around(run, [begin, end], [BEFORE, AFTER])
+    }
+
+    /// The same, with so many seconds before and after it.
+    pub(in crate::batch) fn around(run: &LoggedRun, [begin, end]: [Second; 2], [before, after]: [Second; 2]) -> Self {
         let step = run.step_length.unwrap_or(1.0);
         let counted = run.summary.begin;
         let warm_up = run.options.get("warmup").and_then(Value::as_f64).unwrap_or_default();
-        let steps = ((begin - BEFORE - counted + SAME_MOMENT) / step).floor();
+        let steps = ((begin - before - counted + SAME_MOMENT) / step).floor();
         let from = milliseconds(counted + steps * step);
         Self {
             from,
-            end: milliseconds((end + AFTER).min(run.summary.end) + step),
+            end: milliseconds((end + after).min(run.summary.end) + step),
             warm_up: milliseconds((counted - from).max(0.0)),
             warm_up_of_run: milliseconds(warm_up + (from - counted).max(0.0)),
             is_within: from > counted - warm_up + step / 2.0,

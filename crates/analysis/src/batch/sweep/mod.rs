@@ -25,6 +25,17 @@ pub use vary::Vary;
 /// More runs than this are a typing mistake.
 const MOST: usize = 1_000_000;
 
+/// A run that is to be part of a sweep.
+#[derive(Clone, Debug)]
+pub struct PlannedRun {
+    /// Its name.
+    pub name: String,
+    /// The words of `closecall run`, without `--out`.
+    pub args: Vec<String>,
+    /// The columns that distinguish it from the others.
+    pub labels: Vec<Label>,
+}
+
 /// All runs of a sweep.
 #[derive(Clone, Debug)]
 pub struct Sweep {
@@ -72,12 +83,10 @@ impl Sweep {
         out: &Path,
         also_read: &[PathBuf],
     ) -> Result<Self> {
-        let read = done::contents(also_read)?;
         // Side by side, runs would write into the same files.
         let has_outputs = seeds.0.len() * settings.len() > 1
             && args.first().is_some_and(|scenario| has_outputs(Path::new(scenario), for_sumo));
-        let mut tasks = Vec::new();
-        let mut names = BTreeSet::new();
+        let mut runs = Vec::new();
         for &seed in &seeds.0 {
             for setting in settings {
                 let name = format!("{}seed-{seed}", setting.name);
@@ -94,12 +103,26 @@ impl Sweep {
                 }
                 let mut labels = setting.labels.clone();
                 labels.push(Label { name: "seed".to_owned(), value: LabelValue::Count(seed) });
-                if !names.insert(name.clone()) {
-                    return Err(Error::SameName(name));
-                }
-                let fingerprint = done::fingerprint(&own, &labels, &read);
-                tasks.push(Task { name, args: own, out: out.to_owned(), labels, fingerprint });
+                runs.push(PlannedRun { name, args: own, labels });
             }
+        }
+        Self::of_runs(runs, out, also_read)
+    }
+
+    /// Plans these runs, all with labels of the same names.
+    ///
+    /// # Errors
+    /// [`Error::SameName`]; an error of closecall-run that names a file which cannot be read.
+    pub fn of_runs(runs: Vec<PlannedRun>, out: &Path, also_read: &[PathBuf]) -> Result<Self> {
+        let read = done::contents(also_read)?;
+        let mut names = BTreeSet::new();
+        let mut tasks = Vec::with_capacity(runs.len());
+        for PlannedRun { name, args, labels } in runs {
+            if !names.insert(name.clone()) {
+                return Err(Error::SameName(name));
+            }
+            let fingerprint = done::fingerprint(&args, &labels, &read);
+            tasks.push(Task { name, args, out: out.to_owned(), labels, fingerprint });
         }
         Ok(Self { tasks, out: out.to_owned() })
     }

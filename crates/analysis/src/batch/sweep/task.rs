@@ -9,6 +9,7 @@ use crate::logged::{self, Label, LoggedRun, PARQUET, RunTime};
 use crate::{Error, Result};
 use closecall_run::options::SERIES_FILES;
 use closecall_run::output::clips::CLIPS;
+use closecall_run::run::roll_out::ROLL_OUT;
 use closecall_run::util::output_file::check_is_no_link;
 
 /// The folder of the data set in a sweep's folder.
@@ -41,7 +42,7 @@ impl Task {
         if !LoggedRun::read(log)?.complete {
             return Err(Error::content(log, "the run did not reach its end"));
         }
-        let folder = self.out.join("series").join(format!("{RUN}{}", self.name));
+        let folder = self.beside();
         let fault = |source| Error::file(&folder, source);
         let written_into = [self.out.join("series"), folder.clone(), data_set(&self.out), self.log()];
         written_into.iter().try_for_each(|folder| check_is_no_link(folder))?;
@@ -49,11 +50,16 @@ impl Task {
             // The series of the run that this one replaces.
             fs::remove_dir_all(&folder).map_err(fault)?;
         }
-        for name in SERIES_FILES.into_iter().chain([CLIPS]).filter(|name| log.join(name).is_file()) {
+        for name in SERIES_FILES.into_iter().chain([CLIPS, ROLL_OUT]).filter(|name| log.join(name).is_file()) {
             fs::create_dir_all(&folder).map_err(fault)?;
             fs::rename(log.join(name), folder.join(name)).map_err(fault)?;
         }
         logged::pack(log, &self.labels, &self.fingerprint, run_time, &self.file())
+    }
+
+    /// The folder of its series, its clips and what came of its roll-out.
+    pub fn beside(&self) -> PathBuf {
+        self.out.join("series").join(format!("{RUN}{}", self.name))
     }
 
     /// The folder of its file in the data set, which is a log once the run is done.

@@ -1,0 +1,216 @@
+//! What the roll-outs of a conflict say.
+
+use serde::Serialize;
+
+use super::paths::Baseline;
+use super::runs::RolledOut;
+use crate::Result;
+use crate::logged::{ConflictReader, LoggedConflict};
+use crate::statistics::share::{Share, share};
+use closecall::util::units::{Metre, MetrePerSecond, Probability, Second};
+use closecall_run::run::roll_out::Contact;
+
+/// What the roll-outs of a conflict say: a row of `whatif.csv`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Answer {
+    /// The conflict's id in the log.
+    pub conflict: u64,
+    /// The ego.
+    pub ego: String,
+    /// The foe.
+    pub foe: String,
+    /// The kind.
+    pub kind: &'static str,
+    /// What the two were doing.
+    pub manoeuvre: String,
+    /// The severity.
+    pub severity: &'static str,
+    /// When it opens, in s.
+    pub begin: Second,
+    /// The roll-outs that ended.
+    pub roll_outs: u64,
+    /// Those that failed.
+    pub lost: u64,
+    /// Those with a contact of one of the two.
+    pub contacts: u64,
+    /// Those of them with a third road user.
+    pub with_others: u64,
+    /// The share with a contact.
+    pub share: Option<Probability>,
+    /// The lower end of its 95 % interval.
+    pub low: Option<Probability>,
+    /// The upper end.
+    pub high: Option<Probability>,
+    /// The crash probability by the formula, in the step in which the conflict opens in the baseline.
+    pub crash_probability_at_opening: Option<Probability>,
+    /// The largest over the conflict in the baseline.
+    pub crash_probability: Option<Probability>,
+    /// The mean of the larger ΔV over the contacts, in m/s.
+    pub delta_v: Option<MetrePerSecond>,
+    /// The mean probability of a fatal injury over all roll-outs.
+    pub injury_probability: Option<Probability>,
+    /// The response time that tells contacts from the rest best, in s.
+    pub critical_response: Option<Second>,
+    /// The shortest with a contact, in s.
+    pub shortest_with_contact: Option<Second>,
+    /// The longest without, in s.
+    pub longest_without: Option<Second>,
+    /// The contacts that the other driver prevents by braking with a median response.
+    pub prevented_by_other: u64,
+    /// The contacts for which that was tried.
+    pub tried_by_other: u64,
+    /// The largest distance of the two from where they were in the run, in m, in the baseline.
+    pub drift: Option<Metre>,
+    /// A run with a clip of a contact.
+    pub clip_with_contact: String,
+    /// A run with a clip without one.
+    pub clip_without: String,
+    /// Why there is no answer, or what to know about it.
+    pub remark: String,
+}
+
+impl Answer {
+    /// That of a conflict that was not rolled out.
+    pub(super) fn refused(of: &LoggedConflict, why: &str) -> Self {
+        Self {
+            conflict: of.id,
+            ego: of.ego.clone(),
+            foe: of.foe.clone(),
+            kind: of.kind.name(),
+            manoeuvre: of.manoeuvre.clone(),
+            severity: of.severity.name(),
+            begin: of.begin,
+            roll_outs: 0,
+            lost: 0,
+            contacts: 0,
+            with_others: 0,
+            share: None,
+            low: None,
+            high: None,
+            crash_probability_at_opening: None,
+            crash_probability: None,
+            delta_v: None,
+            injury_probability: None,
+            critical_response: None,
+            shortest_with_contact: None,
+            longest_without: None,
+            prevented_by_other: 0,
+            tried_by_other: 0,
+            drift: None,
+            clip_with_contact: String::new(),
+            clip_without: String::new(),
+            remark: why.to_owned(),
+        }
+    }
+
+    /// That of a conflict with a baseline.
+    pub(super) fn of(
+        of: &LoggedConflict,
+        baseline: &Baseline,
+        rolled: &[RolledOut],
+        answered: &[RolledOut],
+        filmed: &[RolledOut],
+        lost: u64,
+    ) -> Result<Self> {
+        let contact = |run: &RolledOut| run.outcome.contact.clone();
+        let struck = rolled.iter().filter_map(|run| Some((run, contact(run)?))).collect::<Vec<_>>();
+        let is_of_the_two = |contact: &Contact| contact.pair.iter().all(|id| [&of.ego, &of.foe].contains(&id));
+        let mut delta_v = Vec::new();
+        let mut injury = 0.0;
+        for (run, contact) in &struck {
+            if let Some(found) = collision(run, contact)? {
+                delta_v.push(found.delta_v());
+                injury += found.injury_probability.unwrap_or_default();
+            }
+        }
+        let Share { value, low, high } = share(struck.len() as u64, rolled.len() as u64);
+        let has_any = !rolled.is_empty();
+        let responses = rolled.iter().filter_map(|run| {
+            let drawn = run.outcome.drivers.first()?;
+            Some((drawn.from.map(|_| drawn.response)?, run.outcome.contact.is_some()))
+        });
+        let responses = responses.collect::<Vec<_>>();
+        let of_contact = |is_contact: bool| responses.iter().filter(move |run| run.1 == is_contact).map(|run| run.0);
+        let clip = |is_contact: bool| {
+            let run = filmed.iter().find(|run| run.outcome.contact.is_some() == is_contact);
+            run.map(|run| run.task.beside().display().to_string()).unwrap_or_default()
+        };
+        let never_opened = rolled.len() - responses.len();
+        let remark = match () {
+            () if baseline.collides => "the two strike each other without any error".to_owned(),
+            () if never_opened > 0 => format!("in {never_opened} roll-outs no conflict of the two opened"),
+            () => String::new(),
+        };
+        Ok(Self {
+            roll_outs: rolled.len() as u64,
+            lost,
+            contacts: struck.len() as u64,
+            with_others: struck.iter().filter(|(_, contact)| !is_of_the_two(contact)).count() as u64,
+            share: has_any.then_some(value),
+            low: has_any.then_some(low),
+            high: has_any.then_some(high),
+            crash_probability_at_opening: baseline.at_opening,
+            crash_probability: baseline.largest,
+            delta_v: (!delta_v.is_empty()).then(|| delta_v.iter().sum::<f64>() / delta_v.len() as f64),
+            injury_probability: has_any.then(|| injury / rolled.len() as f64),
+            critical_response: threshold(&responses),
+            shortest_with_contact: of_contact(true).reduce(f64::min),
+            longest_without: of_contact(false).reduce(f64::max),
+            prevented_by_other: answered.iter().filter(|run| run.outcome.contact.is_none()).count() as u64,
+            tried_by_other: answered.len() as u64,
+            drift: Some(baseline.drift),
+            clip_with_contact: clip(true),
+            clip_without: clip(false),
+            ..Self::refused(of, &remark)
+        })
+    }
+}
+
+/// The conflict of a contact in the log of its run.
+fn collision(run: &RolledOut, contact: &Contact) -> Result<Option<LoggedConflict>> {
+    let [a, b] = &contact.pair;
+    for found in ConflictReader::open(&run.task.log())? {
+        let found = found?;
+        let is_pair = (&found.ego, &found.foe) == (a, b) || (&found.ego, &found.foe) == (b, a);
+        if is_pair && found.collision {
+            return Ok(Some(found));
+        }
+    }
+    Ok(None)
+}
+
+/// The value from which on most are true and below which most are not: the one with the fewest on the wrong side. None where all
+/// are equal.
+fn threshold(values: &[(Second, bool)]) -> Option<Second> {
+    let mut values = values.to_vec();
+    values.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let all = values.iter().filter(|value| value.1).count();
+    if all == 0 || all == values.len() {
+        return None;
+    }
+    // Below the threshold, those that are true are wrong; above it, those that are not.
+    let mut wrong = values.len() - all;
+    let mut best = (wrong, values[0].0);
+    for pair in values.windows(2) {
+        wrong = if pair[0].1 { wrong + 1 } else { wrong - 1 };
+        if wrong < best.0 {
+            best = (wrong, f64::midpoint(pair[0].0, pair[1].0));
+        }
+    }
+    Some(best.1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_threshold_parts_contacts_from_the_rest() {
+        let values = |limit: f64| (0..20).map(|k| f64::from(k) / 10.0).map(|t| (t, t > limit)).collect::<Vec<_>>();
+        assert!((threshold(&values(1.23)).unwrap() - 1.25).abs() < 1e-12);
+        assert_eq!(threshold(&values(5.0)), None);
+        let mut mixed = values(1.23);
+        mixed[3].1 = true;
+        assert!((threshold(&mixed).unwrap() - 1.25).abs() < 1e-12, "one on the wrong side moves nothing");
+    }
+}
