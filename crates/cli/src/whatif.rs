@@ -15,7 +15,7 @@ use closecall::options::{DriverModel, DriverOptions, duration};
 use closecall::util::threads::processors;
 use closecall::util::units::Second;
 use closecall_analysis::batch::sweep::Sweep;
-use closecall_analysis::batch::whatif::{Answer, Asked, Onset, Tools, WhatIf, Whose};
+use closecall_analysis::batch::whatif::{Asked, Draws, Onset, Tools, WhatIf, Whose};
 use closecall_analysis::logged::ConflictSelector;
 use closecall_run::RunOptions;
 use closecall_run::options::OptionsFile;
@@ -50,6 +50,9 @@ pub(crate) struct WhatIfArgs {
     /// When the driver would have to respond.
     #[arg(long, value_enum, default_value_t)]
     from: Onset,
+    /// What SUMO draws at random in a roll-out.
+    #[arg(long, value_enum, default_value_t)]
+    draws: Draws,
     /// How long a roll-out goes on after the conflict opened, in s.
     #[arg(long, value_name = "S", default_value_t = 8.0, value_parser = duration)]
     horizon: Second,
@@ -72,8 +75,6 @@ pub(crate) struct WhatIfArgs {
 
 /// The name of the results' default folder.
 const RESULTS: &str = "closecall-whatif";
-/// The table of the results.
-const TABLE: &str = "whatif.csv";
 
 /// Does the missing runs and writes what all of them show; returns the exit status, 1 if some failed.
 pub fn run(arguments: &WhatIfArgs, known: &[String], sumo: Option<Sumo>) -> Result<u8> {
@@ -100,6 +101,7 @@ pub fn run(arguments: &WhatIfArgs, known: &[String], sumo: Option<Sumo>) -> Resu
         error: arguments.error,
         whose: arguments.whose,
         from: arguments.from,
+        draws: arguments.draws,
         seed: arguments.seed,
     };
     let _alone = LogFolder::claim(&out)?;
@@ -117,11 +119,10 @@ pub fn run(arguments: &WhatIfArgs, known: &[String], sumo: Option<Sumo>) -> Resu
     run(&whatif.answered()?, Telling::Nothing)?;
     run(&whatif.filmed()?, Telling::Nothing)?;
     let answers = whatif.answers(&lost)?;
-    let table = out.join(TABLE);
-    Answer::write(&answers, &table)?;
+    let [table, page] = whatif.write(&answers)?;
     if !quiet {
         answers.iter().try_for_each(|answer| print(format_args!("{}\n", answer.in_words())))?;
-        print(format_args!("More is in {}\n", table.display()))?;
+        print(format_args!("More is in {} and {}\n", table.display(), page.display()))?;
     }
     Ok(u8::from(!lost.is_empty()))
 }

@@ -88,16 +88,21 @@ impl Playback {
     }
 }
 
+/// The file of a log's clips; that of a sweep's run is beside the data set.
+fn clips_file(folder: &Path) -> Option<PathBuf> {
+    let of_sweep = folder.parent().and_then(Path::parent).zip(folder.file_name());
+    let beside = of_sweep.map(|(sweep, run)| sweep.join("series").join(run));
+    let folders = [Some(folder.to_owned()), beside].into_iter().flatten();
+    folders.map(|folder| folder.join(CLIPS)).find(|path| path.is_file())
+}
+
 /// The clips of those conflicts of a log that have one, by the conflicts' `id`.
 ///
 /// # Errors
 /// [`Error::file`] and [`Error::line`] where the file of the clips is not as a run writes it.
 pub fn clips(folder: &Path, ids: &[u64]) -> Result<FxHashMap<u64, Clip>> {
-    let path = folder.join(CLIPS);
     let mut found = FxHashMap::default();
-    if !path.is_file() {
-        return Ok(found);
-    }
+    let Some(path) = clips_file(folder) else { return Ok(found) };
     let mut file = input_file::open(&path)?;
     for number in 1.. {
         if found.len() == ids.len() {
@@ -124,7 +129,7 @@ pub fn clips(folder: &Path, ids: &[u64]) -> Result<FxHashMap<u64, Clip>> {
 pub fn may_have_clip(folder: &Path, run: &LoggedRun, conflict: &LoggedConflict) -> bool {
     let level = level(run);
     let is_kept = level != NO_CLIPS && !is_milder(conflict.severity, level) && !run.sets_aside(conflict);
-    is_kept && folder.join(CLIPS).is_file()
+    is_kept && clips_file(folder).is_some()
 }
 
 /// The level of a run that keeps no clips.
@@ -157,7 +162,7 @@ fn no_clip(folder: &Path, conflict: &LoggedConflict) -> Error {
         Some(run) if run.sets_aside(conflict) => {
             format!("it is not traffic's ({}); run it again with --artefacts", conflict.artefact)
         }
-        Some(_) if !folder.join(CLIPS).is_file() => format!("there is no {CLIPS} in the folder"),
+        Some(_) if clips_file(folder).is_none() => format!("there is no {CLIPS} in the folder"),
         Some(_) => format!("its run kept at most {MOST}; --log-clips critical, or --begin, leaves out others"),
     };
     Error::NoClip(folder.to_owned(), conflict.id, why)

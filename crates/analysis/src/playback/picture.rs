@@ -21,11 +21,11 @@ const FULL: Second = 3.0;
 /// Length of the bar.
 const BAR: f64 = 300.0;
 
-const GRASS: &str = "#dfe5d8";
+pub(super) const GRASS: &str = "#dfe5d8";
 const INK: &str = "#1b1f23";
 const OTHER: &str = "#d7dbe0";
 const GLASS: &str = "#2b3036";
-const FONT: &str = "system-ui,-apple-system,Segoe UI,DejaVu Sans,sans-serif";
+pub(super) const FONT: &str = "system-ui,-apple-system,Segoe UI,DejaVu Sans,sans-serif";
 
 /// The clip as an SVG.
 pub fn svg(playback: &Playback) -> String {

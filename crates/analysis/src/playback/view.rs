@@ -31,11 +31,16 @@ impl View {
         // The two in the second before the worst step, so that one sees them come.
         let seen = clip.times.iter().enumerate().filter(|(_, time)| (**time - clip.times[worst]).abs() <= 1.5);
         let places = seen.flat_map(|(place, _)| clip.users[..2].iter().filter_map(move |user| front(user, place)));
+        Self::around(at, places)
+    }
+
+    /// That around a place, such that all these places are seen.
+    pub fn around(centre: Point, places: impl Iterator<Item = Point>) -> Self {
         let reach = places.fold(0.0_f64, |most, place| {
-            let away = place - at;
+            let away = place - centre;
             most.max(away.x.abs()).max(away.y.abs() * SIZE[0] / (SIZE[1] - PANEL))
         });
-        Self { centre: at, half_width: (reach + ROOM).clamp(HALF_WIDTH[0], HALF_WIDTH[1]) }
+        Self { centre, half_width: (reach + ROOM).clamp(HALF_WIDTH[0], HALF_WIDTH[1]) }
     }
 
     /// Units per metre.

@@ -5,6 +5,7 @@ use strum::IntoStaticStr;
 
 use closecall::util::units::{Probability, Second};
 use closecall_run::run::roll_out::DriverError;
+use closecall_run::util::decimal::Written;
 
 /// Whose error it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, IntoStaticStr)]
@@ -30,6 +31,17 @@ pub enum Onset {
     Worst,
 }
 
+/// What SUMO draws at random in a roll-out: dawdling, speeds of those that enter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, IntoStaticStr)]
+#[strum(serialize_all = "kebab-case")]
+pub enum Draws {
+    /// What it drew in the run: only the driver differs.
+    #[default]
+    Same,
+    /// Others in each roll-out, so that the conflict itself may not come about.
+    New,
+}
+
 /// What is asked about each conflict.
 #[derive(Clone, Debug)]
 pub struct Asked {
@@ -43,6 +55,8 @@ pub struct Asked {
     pub whose: Whose,
     /// From when on.
     pub from: Onset,
+    /// What SUMO draws.
+    pub draws: Draws,
     /// The first seed: others give other roll-outs.
     pub seed: u32,
 }
@@ -59,6 +73,20 @@ pub(super) struct DrawnDriver {
 }
 
 impl Asked {
+    /// In a line.
+    pub fn in_words(&self) -> String {
+        let name = |word: &'static str| word;
+        format!(
+            "{} roll-outs of {} s each, error: {}, whose: {}, from: {}, draws: {}",
+            self.roll_outs,
+            Written(self.horizon),
+            name(self.error.into()),
+            name(self.whose.into()),
+            name(self.from.into()),
+            name(self.draws.into())
+        )
+    }
+
     /// The driver of a conflict's roll-out; the same numbers give the same driver.
     pub(super) fn draw(&self, conflict: u64, number: u32) -> DrawnDriver {
         let mut random = fastrand::Rng::with_seed(u64::from(self.seed) << 32 | u64::from(number));
@@ -85,6 +113,7 @@ mod tests {
             error: DriverError::Late,
             whose: Whose::Drawn,
             from: Onset::Open,
+            draws: Draws::Same,
             seed: 1,
         };
         assert_eq!(asked.draw(7, 3), asked.draw(7, 3));

@@ -7,12 +7,13 @@
 
 mod answer;
 mod asked;
+mod page;
 mod paths;
 mod runs;
 mod scenario;
 mod table;
 
 pub use answer::Answer;
-pub use asked::{Asked, Onset, Whose};
+pub use asked::{Asked, Draws, Onset, Whose};
 pub use runs::WhatIf;
 pub use scenario::Tools;

@@ -18,6 +18,8 @@ const SAME_CONFLICT: Second = 2.0;
 pub(super) struct Baseline {
     /// The ids of those of the two that are persons.
     pub persons: Vec<String>,
+    /// The number of its start.
+    pub start: usize,
     /// The largest distance of the two from where they were in the run at the same time, in m.
     pub drift: Metre,
     /// The crash probability in the step in which the conflict opens.
@@ -29,14 +31,33 @@ pub(super) struct Baseline {
     pub collides: bool,
 }
 
-/// The baseline of a conflict, or why there is none.
-pub(super) fn baseline(
+/// The baseline of a conflict, the one of several that is nearest to the run, or why there is none.
+pub(super) fn nearest<'a>(
     subject: &Subject,
+    original: &Task,
+    tasks: impl Iterator<Item = &'a Task>,
+) -> Result<std::result::Result<Baseline, String>> {
+    let mut best = Err("its baselines failed".to_owned());
+    for (start, task) in tasks.enumerate() {
+        match (baseline(subject, start, original, task)?, &best) {
+            (Ok(found), Ok(Baseline { drift, .. })) if found.drift >= *drift => {}
+            (Ok(found), _) => best = Ok(found),
+            (Err(why), Err(_)) => best = Err(why),
+            (Err(_), Ok(_)) => {}
+        }
+    }
+    Ok(best)
+}
+
+/// The baseline from one start, or why the conflict does not happen in it.
+fn baseline(
+    subject: &Subject,
+    start: usize,
     original: &Task,
     task: &Task,
 ) -> Result<std::result::Result<Baseline, String>> {
     if !original.file().exists() || !task.file().exists() {
-        return Ok(Err("its baseline failed".to_owned()));
+        return Ok(Err("its baselines failed".to_owned()));
     }
     let wanted = &subject.conflict;
     let Some(there) = find(&original.log(), wanted, SAME_MOMENT)? else {
@@ -47,19 +68,20 @@ pub(super) fn baseline(
     let drift = [&there.ego, &there.foe].into_iter().map(|id| distance(of_run.paths.get(id), own.paths.get(id)));
     let drift = drift.fold(0.0, f64::max);
     let Some(found) = find(&task.log(), wanted, SAME_CONFLICT)? else {
-        let why = format!("it does not happen in the run from SUMO's saved state, which drifts by {drift:.1} m");
+        let why = format!("it does not happen in runs from SUMO's saved states, which drift by {drift:.1} m");
         return Ok(Err(why));
     };
     let series = task.beside().join(SERIES_FILES[0]);
     let steps = probabilities(&series, found.id)?;
     let largest = steps.iter().copied().reduce(|best, next| if next.1 > best.1 { next } else { best });
     Ok(Ok(Baseline {
+        collides: own.contact.is_some(),
         persons: own.persons,
+        start,
         drift,
         at_opening: steps.first().map(|step| step.1),
         largest: largest.map(|step| step.1),
         worst: largest.map(|step| step.0),
-        collides: found.collision,
     }))
 }
 

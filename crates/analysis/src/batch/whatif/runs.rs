@@ -3,13 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use super::answer::Answer;
-use super::asked::{Asked, Onset};
-use super::paths::{Baseline, baseline};
+use super::asked::{Asked, Draws, Onset};
+use super::page;
+use super::paths::{Baseline, nearest};
 use super::scenario::{Scenario, Subject, Tools};
 use crate::batch::extract::WHOLE_STATE;
 use crate::batch::sweep::{PlannedRun, Sweep, Task};
-use crate::logged::{Label, LabelValue, LoggedConflict};
+use crate::dataset::nets;
+use crate::logged::{Label, LabelValue, LoggedConflict, record};
 use crate::{Error, Result};
+use closecall::traffic::net::Net;
 use closecall_run::run::roll_out::{DriverError, ErringDriver, Outcome, ROLL_OUT, RollOut, Watched};
 
 /// The arms: runs of a conflict that differ in the same way from the others.
@@ -40,6 +43,13 @@ pub(super) struct RolledOut {
     pub outcome: Outcome,
 }
 
+/// The roll-outs of a conflict.
+pub(super) struct Rolled<'a> {
+    pub conflict: &'a LoggedConflict,
+    pub roll_outs: Vec<RolledOut>,
+    pub filmed: Vec<RolledOut>,
+}
+
 impl WhatIf {
     /// Prepares what is asked about conflicts of the log in a folder; `out` is the folder of the results.
     ///
@@ -61,11 +71,14 @@ impl WhatIf {
     /// # Errors
     /// Those of [`Sweep::of_runs`].
     pub fn original(&self) -> Result<Sweep> {
-        let subjects = &self.scenario.subjects;
-        let watched = subjects.iter().map(|subject| self.watched(subject)).collect();
-        let times = joined(subjects.iter().map(|subject| subject.period.from.to_string()));
-        let files =
-            joined(subjects.iter().map(|subject| self.scenario.state(subject.conflict.id).display().to_string()));
+        let watched = self.scenario.subjects.iter().map(watched).collect();
+        let states =
+            self.scenario.starts().map(|(_, _, period)| (period.from, self.scenario.state(period, Draws::Same)));
+        let mut states = states.collect::<Vec<_>>();
+        states.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        states.dedup();
+        let times = joined(states.iter().map(|(time, _)| time.to_string()));
+        let files = joined(states.iter().map(|(_, file)| file.display().to_string()));
         let sumo = ["--save-state.times", &*times, "--save-state.files", &*files].into_iter().chain(WHOLE_STATE);
         let roll_out = RollOut { watched, ..RollOut::default() };
         let args = self.args(&self.scenario.whole(), self.scenario.seed, &roll_out, &[], sumo.map(str::to_owned))?;
@@ -79,10 +92,10 @@ impl WhatIf {
     /// Those of [`Sweep::of_runs`], of reading the states and writing those without random numbers.
     pub fn baselines(&self) -> Result<Sweep> {
         self.scenario.remove_draws()?;
-        let runs = self.scenario.subjects.iter().map(|subject| {
-            let roll_out = RollOut { watched: vec![self.watched(subject)], ..RollOut::default() };
-            let from = self.scenario.state(subject.conflict.id);
-            self.run(subject, &from, BASELINE, 0, self.scenario.seed, &roll_out)
+        let runs = self.scenario.starts().map(|(subject, start, _)| {
+            let roll_out = RollOut { watched: vec![watched(subject)], ..RollOut::default() };
+            let from = self.scenario.configuration(subject, start, Draws::Same);
+            self.run(subject, &from, BASELINE, start as u32, self.scenario.seed, &roll_out)
         });
         self.sweep(runs.collect::<Result<_>>()?)
     }
@@ -94,8 +107,9 @@ impl WhatIf {
     pub fn roll_outs(&mut self) -> Result<Sweep> {
         let [original] = &self.original()?.tasks[..] else { return self.sweep(Vec::new()) };
         let baselines = self.baselines()?;
-        let known = self.scenario.subjects.iter().zip(&baselines.tasks);
-        self.baselines = known.map(|(subject, task)| baseline(subject, original, task)).collect::<Result<_>>()?;
+        let mut tasks = baselines.tasks.iter();
+        let own = |subject: &Subject| nearest(subject, original, tasks.by_ref().take(subject.periods.len()));
+        self.baselines = self.scenario.subjects.iter().map(own).collect::<Result<_>>()?;
         let mut runs = Vec::new();
         for (subject, _) in self.that_happen() {
             for number in 0..self.asked.roll_outs {
@@ -145,7 +159,7 @@ impl WhatIf {
         let of = |(subject, baseline): (&Subject, &std::result::Result<Baseline, String>)| match baseline {
             Err(why) => Ok(Answer::refused(&subject.conflict, why)),
             Ok(baseline) => {
-                let is_lost = |name: &&String| name.starts_with(&(name_of(subject.conflict.id, ERROR, None) + "-"));
+                let is_lost = |name: &&String| name.starts_with(&name_of(subject.conflict.id, ERROR, ""));
                 let lost = lost.iter().filter(is_lost).count() as u64;
                 let answered = self.outcomes(subject, ANSWERED)?;
                 let filmed = self.outcomes(subject, FILMED)?;
@@ -153,6 +167,36 @@ impl WhatIf {
             }
         };
         self.scenario.subjects.iter().zip(&self.baselines).map(of).collect()
+    }
+
+    /// Writes `whatif.csv` and `whatif.html` into the folder of the results; returns the paths of the two.
+    ///
+    /// # Errors
+    /// Those of reading the runs and of writing the files.
+    pub fn write(&self, answers: &[Answer]) -> Result<[PathBuf; 2]> {
+        let files = ["whatif.csv", "whatif.html"].map(|name| self.out.join(name));
+        Answer::write(answers, &files[0])?;
+        page::write(self, answers, &files[1])?;
+        Ok(files)
+    }
+
+    /// The roll-outs of a conflict; none where it does not happen in its baseline.
+    pub(super) fn rolled(&self, conflict: u64) -> Result<Option<Rolled<'_>>> {
+        let Some((subject, _)) = self.that_happen().find(|(subject, _)| subject.conflict.id == conflict) else {
+            return Ok(None);
+        };
+        let (roll_outs, filmed) = (self.rolled_out(subject)?, self.outcomes(subject, FILMED)?);
+        Ok(Some(Rolled { conflict: &subject.conflict, roll_outs, filmed }))
+    }
+
+    /// The net; none where it cannot be read.
+    pub(super) fn net(&self) -> Result<Option<Net>> {
+        let original = &self.original()?.tasks[0];
+        if !original.file().exists() {
+            return Ok(None);
+        }
+        let record = serde_json::to_value(record(&original.log())?.1.parse::<serde_json::Value>().ok());
+        Ok(nets::find(None, &[original.log()], &[record.unwrap_or_default()])?.net)
     }
 
     /// The folder of the results.
@@ -192,17 +236,23 @@ impl WhatIf {
             let (response, deceleration) = (MEDIAN, MEDIAN);
             drivers.push(ErringDriver { id: foe, foe: id, error: DriverError::Late, from, response, deceleration });
         }
-        let roll_out = RollOut { watched: vec![self.watched(subject)], drivers, ends_at_contact: true };
+        let roll_out = RollOut { watched: vec![watched(subject)], drivers, ends_at_contact: true };
         let seed = self.asked.seed.wrapping_add(number) % SEEDS;
-        self.run(subject, &self.scenario.state_without_draws(subject.conflict.id), arm, number, seed, &roll_out)
+        let start = self.baseline(subject).map_or(0, |baseline| baseline.start);
+        let from = self.scenario.configuration(subject, start, self.asked.draws);
+        self.run(subject, &from, arm, number, seed, &roll_out)
+    }
+
+    /// The baseline of a subject; none where its conflict does not happen.
+    fn baseline(&self, subject: &Subject) -> Option<&Baseline> {
+        self.that_happen().find(|(known, _)| known.conflict.id == subject.conflict.id).map(|(_, baseline)| baseline)
     }
 
     /// The driver that errs in a roll-out.
     fn drawn_driver(&self, subject: &Subject, number: u32) -> ErringDriver {
         let drawn = self.asked.draw(subject.conflict.id, number);
         let LoggedConflict { ego, foe, .. } = &subject.conflict;
-        let place = self.scenario.subjects.iter().position(|known| known.conflict.id == subject.conflict.id);
-        let baseline = place.and_then(|place| self.baselines.get(place)?.as_ref().ok());
+        let baseline = self.baseline(subject);
         let is_person = |id: &String| baseline.is_some_and(|baseline| baseline.persons.contains(id));
         let is_foe = if drawn.is_foe { !is_person(foe) } else { is_person(ego) };
         let (id, other) = if is_foe { (foe, ego) } else { (ego, foe) };
@@ -232,7 +282,7 @@ impl WhatIf {
             FILMED => &["--log-clips=caution"],
             _ => &[],
         };
-        let args = self.args(&from.with_extension("sumocfg"), seed, roll_out, more, [])?;
+        let args = self.args(from, seed, roll_out, more, [])?;
         let id = subject.conflict.id;
         let label = |name: &str, value| Label { name: name.to_owned(), value };
         let labels = vec![
@@ -240,8 +290,7 @@ impl WhatIf {
             label("arm", LabelValue::Text(arm.to_owned())),
             label("roll_out", LabelValue::Count(number)),
         ];
-        let number = (arm != BASELINE).then_some(number);
-        Ok(PlannedRun { name: name_of(id, arm, number), args, labels })
+        Ok(PlannedRun { name: name_of(id, arm, &number.to_string()), args, labels })
     }
 
     /// The words of `closecall run`.
@@ -269,17 +318,19 @@ impl WhatIf {
     fn sweep(&self, runs: Vec<PlannedRun>) -> Result<Sweep> {
         Sweep::of_runs(runs, &self.out, &[self.scenario.settings()])
     }
+}
 
-    fn watched(&self, subject: &Subject) -> Watched {
-        let LoggedConflict { ego, foe, .. } = &subject.conflict;
-        Watched { pair: [ego.clone(), foe.clone()], from: subject.period.from, until: subject.period.end }
-    }
+/// The two of a subject, as long as any of its periods lasts.
+fn watched(subject: &Subject) -> Watched {
+    let LoggedConflict { ego, foe, .. } = &subject.conflict;
+    let from = subject.periods.iter().map(|period| period.from).fold(f64::INFINITY, f64::min);
+    let until = subject.periods.iter().map(|period| period.end).fold(0.0, f64::max);
+    Watched { pair: [ego.clone(), foe.clone()], from, until }
 }
 
 /// The name of a run, or its beginning.
-fn name_of(conflict: u64, arm: &str, number: Option<u32>) -> String {
-    let number = number.map_or_else(String::new, |number| format!("-{number}"));
-    format!("conflict-{conflict}_{arm}{number}")
+fn name_of(conflict: u64, arm: &str, number: &str) -> String {
+    format!("conflict-{conflict}_{arm}-{number}")
 }
 
 fn joined(parts: impl Iterator<Item = String>) -> String {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
+use super::asked::Draws;
 use crate::batch::extract::SaveConfiguration;
 use crate::batch::extract::configuration::{self, Configuration};
 use crate::batch::extract::source::{Period, check_can_be_run};
@@ -15,9 +16,9 @@ use closecall::options::DriverOptions;
 use closecall::util::units::Second;
 use closecall_run::util::{input_file, output_file};
 
-/// A state is saved this long before its conflict, in s: the two have then been there for some steps, and SUMO's state has had
-/// little time to drift.
-const BEFORE: Second = 5.0;
+/// States are saved so long before a conflict, in s. Where a road user waits at a junction, the first steps from a state may
+/// differ, so that the best of several is taken.
+const BEFORE: [Second; 3] = [5.0, 10.0, 15.0];
 
 /// The scenario as a whole, for the run that saves the states.
 const WHOLE: &str = "whole.sumocfg";
@@ -36,11 +37,11 @@ pub struct Tools<'a> {
     pub driver: Option<DriverOptions>,
 }
 
-/// A conflict and the part of the run around it.
+/// A conflict and the parts of the run around it, each with a state of its own.
 #[derive(Clone, Debug)]
 pub(super) struct Subject {
     pub conflict: LoggedConflict,
-    pub period: Period,
+    pub periods: Vec<Period>,
 }
 
 /// The folder of the scenario.
@@ -66,19 +67,19 @@ impl Scenario {
         // SUMO saves a state after a step.
         let warm_up = run.options.get("warmup").and_then(Value::as_f64).unwrap_or_default();
         let first = run.summary.begin - warm_up + run.step_length.unwrap_or(1.0);
-        let subjects = conflicts.into_iter().map(|conflict| {
-            let mut period = Period::around(&run, [conflict.begin, conflict.begin], [BEFORE, horizon]);
-            period.from = period.from.max(first);
-            Subject { conflict, period }
-        });
-        let scenario = Self { folder, seed, subjects: subjects.collect() };
+        let subject = |conflict: LoggedConflict| {
+            let around = |before| Period::around(&run, [conflict.begin, conflict.begin], [before, horizon]);
+            let periods = BEFORE.map(around).map(|period| Period { from: period.from.max(first), ..period });
+            let mut periods = Vec::from(periods);
+            periods.dedup_by(|a, b| a.from.total_cmp(&b.from).is_eq());
+            Subject { conflict, periods }
+        };
+        let scenario = Self { folder, seed, subjects: conflicts.into_iter().map(subject).collect() };
         let options = options(&run, tools);
-        let periods =
-            scenario.subjects.iter().map(|subject| (subject.conflict.id, subject.period.from, subject.period.end));
         let inputs = run.inputs.iter().map(|input| &input.sha256).collect::<Vec<_>>();
-        let made_of = json!({
-            "words": run.sumo_words, "inputs": inputs, "options": options, "periods": periods.collect::<Vec<_>>()
-        });
+        let periods = scenario.starts().map(|(subject, _, period)| (subject.conflict.id, period.from, period.end));
+        let periods = periods.collect::<Vec<_>>();
+        let made_of = json!({"words": run.sumo_words, "inputs": inputs, "options": options, "periods": periods});
         let made_of = made_of.to_string();
         let known = input_file::text(&scenario.folder.join(MADE_OF));
         if known.is_ok_and(|known| known == made_of) {
@@ -99,26 +100,33 @@ impl Scenario {
         fs::create_dir_all(place).map_err(fault)?;
         let saved = place.join("saved.sumocfg");
         (tools.save_configuration)(&run.sumo_words, &saved)?;
-        // Two that touch go on: what counts as a contact is for closecall to say, and SUMO removes none.
         let whole = Configuration::gather(&saved, place)?;
         fs::remove_file(&saved).map_err(|source| Error::file(&saved, source))?;
         let filter = run.options.get("filter").and_then(Value::as_str).map(Path::new);
         let filter = filter.map(|filter| configuration::copy(filter, place)).transpose()?;
         let filter = filter.map_or_else(String::new, |name| format!("filter = {}\n", Value::from(name)));
         output_file::write(&place.join(SETTINGS), toml_options::toml(options, &filter).as_bytes())?;
-        let last = self.subjects.iter().map(|subject| subject.period.end).fold(0.0, f64::max);
+        let last = self.starts().map(|(_, _, period)| period.end).fold(0.0, f64::max);
         whole.clone().with("end", last).write(&place.join(WHOLE))?;
+        // Two that touch go on: what counts as a contact is for closecall to say, and SUMO removes none.
         let short = whole.without("route-files").without("load-state").without("collision.");
         let short = short.with("collision.action", "none");
-        for Subject { conflict, period } in &self.subjects {
-            for state in [self.state(conflict.id), self.state_without_draws(conflict.id)] {
+        for (subject, start, period) in self.starts() {
+            for draws in [Draws::Same, Draws::New] {
+                let state = self.state(period, draws);
                 let name = state.file_name().unwrap_or_default().to_string_lossy().into_owned();
-                let of_state =
-                    short.clone().with("load-state", name).with("begin", period.from).with("end", period.end);
-                of_state.write(&state.with_extension("sumocfg"))?;
+                let from_there = short.clone().with("load-state", name).with("begin", period.from);
+                from_there.with("end", period.end).write(&self.configuration(subject, start, draws))?;
             }
         }
         Ok(())
+    }
+
+    /// All starts: the subject, the start's number there, its period.
+    pub fn starts(&self) -> impl Iterator<Item = (&Subject, usize, &Period)> {
+        self.subjects
+            .iter()
+            .flat_map(|subject| subject.periods.iter().enumerate().map(move |(start, period)| (subject, start, period)))
     }
 
     /// The configuration of the whole run.
@@ -131,28 +139,34 @@ impl Scenario {
         self.folder.join(SETTINGS)
     }
 
-    /// SUMO's state before a conflict; the configuration that begins there has the same name.
-    pub fn state(&self, conflict: u64) -> PathBuf {
-        self.folder.join(format!("conflict-{conflict}.xml"))
+    /// The configuration that begins at one of a subject's starts.
+    pub fn configuration(&self, subject: &Subject, start: usize, draws: Draws) -> PathBuf {
+        self.folder.join(format!("conflict-{}-{start}{}.sumocfg", subject.conflict.id, suffix(draws)))
     }
 
-    /// The same without random numbers: SUMO then draws them by its seed.
-    pub fn state_without_draws(&self, conflict: u64) -> PathBuf {
-        self.folder.join(format!("conflict-{conflict}-drawn.xml"))
+    /// SUMO's state at the begin of a period; without its random numbers where new ones are to be drawn.
+    pub fn state(&self, period: &Period, draws: Draws) -> PathBuf {
+        self.folder.join(format!("state-{}{}.xml", period.from, suffix(draws)))
     }
 
     /// Writes the states without random numbers.
     pub fn remove_draws(&self) -> Result<()> {
-        for Subject { conflict, .. } in &self.subjects {
-            let state = self.state(conflict.id);
-            let text = input_file::text(&state)?;
+        for (_, _, period) in self.starts() {
+            let text = input_file::text(&self.state(period, Draws::Same))?;
             let without = match (text.find("<rngState"), text.find("</rngState>")) {
                 (Some(begin), Some(end)) => [&text[..begin], &text[end + "</rngState>".len()..]].concat(),
                 _ => text,
             };
-            output_file::write(&self.state_without_draws(conflict.id), without.as_bytes())?;
+            output_file::write(&self.state(period, Draws::New), without.as_bytes())?;
         }
         Ok(())
+    }
+}
+
+fn suffix(draws: Draws) -> &'static str {
+    match draws {
+        Draws::Same => "",
+        Draws::New => "-new-draws",
     }
 }
 

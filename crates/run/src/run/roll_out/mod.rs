@@ -144,19 +144,10 @@ impl RollOutRun {
     /// the speed at the end of a step, or by the mean one where it is `ballistic`.
     pub fn step(&mut self, run: &Run, is_ballistic: bool) -> Vec<(String, Command)> {
         let time = run.frame.time;
-        for Row { user, state } in run.frame.rows() {
-            let id = run.roster.id(user);
-            let is_now = |watched: &&Watched| watched.from - SAME_MOMENT < time && time < watched.until + SAME_MOMENT;
-            if self.asked.watched.iter().filter(is_now).any(|watched| watched.pair.iter().any(|known| id == known)) {
-                let path = self.outcome.paths.entry(id.to_string()).or_default();
-                if path.is_empty() && run.roster.profile_of(user).category == Category::Person {
-                    self.outcome.persons.push(id.to_string());
-                }
-                path.push((time, state.x, state.y, state.heading, state.speed));
-            }
-        }
-        if self.asked.ends_at_contact && self.outcome.contact.is_none() {
-            self.outcome.contact = self.contact(run);
+        let is_now = |watched: &&Watched| watched.from - SAME_MOMENT < time && time < watched.until + SAME_MOMENT;
+        let watched = self.asked.watched.iter().filter(is_now).flat_map(|watched| &watched.pair).collect::<Vec<_>>();
+        if !watched.is_empty() {
+            self.outcome.see(run, &watched);
         }
         let step = run.step_length().unwrap_or(1.0);
         let mut commands = Vec::new();
@@ -169,7 +160,7 @@ impl RollOutRun {
 
     /// Whether it is over, since two are in contact.
     pub fn is_over(&self) -> bool {
-        self.outcome.contact.is_some()
+        self.asked.ends_at_contact && self.outcome.contact.is_some()
     }
 
     /// Writes what came of it into a log's folder.
@@ -181,19 +172,31 @@ impl RollOutRun {
         let text = serde_json::to_string(&self.outcome).map_err(|error| Error::content(&path, error.to_string()))?;
         output_file::write(&path, text.as_bytes())
     }
-
-    /// The contact of one of the watched in the conflicts that are open.
-    fn contact(&self, run: &Run) -> Option<Contact> {
-        let is_watched =
-            |id: &str| self.asked.watched.iter().any(|watched| watched.pair.iter().any(|known| known == id));
-        let conflicts = run.conflicts();
-        let mut struck = conflicts.iter().filter(|conflict| conflict.collision && conflict.artefact.is_none());
-        let found = struck.find(|conflict| is_watched(&conflict.ego) || is_watched(&conflict.foe))?;
-        Some(Contact { time: run.frame.time, pair: [found.ego.to_string(), found.foe.to_string()] })
-    }
 }
 
 impl Outcome {
+    /// Notes where the watched are after a step, and whether one of them is in contact.
+    fn see(&mut self, run: &Run, watched: &[&String]) {
+        for Row { user, state } in run.frame.rows() {
+            let id = run.roster.id(user);
+            if watched.iter().any(|known| *known == id) {
+                let path = self.paths.entry(id.to_string()).or_default();
+                if path.is_empty() && run.roster.profile_of(user).category == Category::Person {
+                    self.persons.push(id.to_string());
+                }
+                path.push((run.frame.time, state.x, state.y, state.heading, state.speed));
+            }
+        }
+        if self.contact.is_none() {
+            let is_watched = |id: &str| watched.iter().any(|known| *known == id);
+            let conflicts = run.conflicts();
+            let mut struck = conflicts.iter().filter(|conflict| conflict.collision && conflict.artefact.is_none());
+            let found = struck.find(|conflict| is_watched(&conflict.ego) || is_watched(&conflict.foe));
+            self.contact = found
+                .map(|found| Contact { time: run.frame.time, pair: [found.ego.to_string(), found.foe.to_string()] });
+        }
+    }
+
     /// Reads it.
     ///
     /// # Errors
