@@ -61,9 +61,9 @@ pub struct Answer {
     pub tried_by_other: u64,
     /// The largest distance of the two from where they were in the run, in m, in the baseline.
     pub drift: Option<Metre>,
-    /// A run with a clip of a contact.
+    /// The name of a run with a clip of a contact.
     pub clip_with_contact: String,
-    /// A run with a clip without one.
+    /// That of one without.
     pub clip_without: String,
     /// Why there is no answer, or what to know about it.
     pub remark: String,
@@ -133,7 +133,7 @@ impl Answer {
         let of_contact = |is_contact: bool| responses.iter().filter(move |run| run.1 == is_contact).map(|run| run.0);
         let clip = |is_contact: bool| {
             let run = filmed.iter().find(|run| run.outcome.contact.is_some() == is_contact);
-            run.map(|run| run.task.beside().display().to_string()).unwrap_or_default()
+            run.map(|run| run.task.name.clone()).unwrap_or_default()
         };
         let never_opened = rolled.len() - responses.len();
         let remark = match () {

@@ -75,15 +75,14 @@ pub(super) struct DrawnDriver {
 impl Asked {
     /// In a line.
     pub fn in_words(&self) -> String {
-        let name = |word: &'static str| word;
         format!(
             "{} roll-outs of {} s each, error: {}, whose: {}, from: {}, draws: {}",
             self.roll_outs,
             Written(self.horizon),
-            name(self.error.into()),
-            name(self.whose.into()),
-            name(self.from.into()),
-            name(self.draws.into())
+            <&str>::from(self.error),
+            <&str>::from(self.whose),
+            <&str>::from(self.from),
+            <&str>::from(self.draws)
         )
     }
 

@@ -72,8 +72,7 @@ impl WhatIf {
     /// Those of [`Sweep::of_runs`].
     pub fn original(&self) -> Result<Sweep> {
         let watched = self.scenario.subjects.iter().map(watched).collect();
-        let states =
-            self.scenario.starts().map(|(_, _, period)| (period.from, self.scenario.state(period, Draws::Same)));
+        let states = self.scenario.starts().map(|(_, _, period)| (period.from, self.scenario.state(period)));
         let mut states = states.collect::<Vec<_>>();
         states.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         states.dedup();
@@ -89,12 +88,11 @@ impl WhatIf {
     /// The runs from the saved states in which no driver errs, once the original has ended.
     ///
     /// # Errors
-    /// Those of [`Sweep::of_runs`], of reading the states and writing those without random numbers.
+    /// Those of [`Sweep::of_runs`].
     pub fn baselines(&self) -> Result<Sweep> {
-        self.scenario.remove_draws()?;
         let runs = self.scenario.starts().map(|(subject, start, _)| {
             let roll_out = RollOut { watched: vec![watched(subject)], ..RollOut::default() };
-            let from = self.scenario.configuration(subject, start, Draws::Same);
+            let from = self.scenario.configuration(subject, start);
             self.run(subject, &from, BASELINE, start as u32, self.scenario.seed, &roll_out)
         });
         self.sweep(runs.collect::<Result<_>>()?)
@@ -185,7 +183,8 @@ impl WhatIf {
         let Some((subject, _)) = self.that_happen().find(|(subject, _)| subject.conflict.id == conflict) else {
             return Ok(None);
         };
-        let (roll_outs, filmed) = (self.rolled_out(subject)?, self.outcomes(subject, FILMED)?);
+        let (roll_outs, mut filmed) = (self.rolled_out(subject)?, self.outcomes(subject, FILMED)?);
+        filmed.sort_by_key(|run| run.outcome.contact.is_none());
         Ok(Some(Rolled { conflict: &subject.conflict, roll_outs, filmed }))
     }
 
@@ -237,9 +236,13 @@ impl WhatIf {
             drivers.push(ErringDriver { id: foe, foe: id, error: DriverError::Late, from, response, deceleration });
         }
         let roll_out = RollOut { watched: vec![watched(subject)], drivers, ends_at_contact: true };
-        let seed = self.asked.seed.wrapping_add(number) % SEEDS;
+        // A state has the numbers of draws so far; what is drawn follows from the seed.
+        let seed = match self.asked.draws {
+            Draws::Same => self.scenario.seed,
+            Draws::New => self.asked.seed.wrapping_add(number) % SEEDS,
+        };
         let start = self.baseline(subject).map_or(0, |baseline| baseline.start);
-        let from = self.scenario.configuration(subject, start, self.asked.draws);
+        let from = self.scenario.configuration(subject, start);
         self.run(subject, &from, arm, number, seed, &roll_out)
     }
 

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::asked::Draws;
 use crate::batch::extract::SaveConfiguration;
 use crate::batch::extract::configuration::{self, Configuration};
 use crate::batch::extract::source::{Period, check_can_be_run};
@@ -112,12 +111,10 @@ impl Scenario {
         let short = whole.without("route-files").without("load-state").without("collision.");
         let short = short.with("collision.action", "none");
         for (subject, start, period) in self.starts() {
-            for draws in [Draws::Same, Draws::New] {
-                let state = self.state(period, draws);
-                let name = state.file_name().unwrap_or_default().to_string_lossy().into_owned();
-                let from_there = short.clone().with("load-state", name).with("begin", period.from);
-                from_there.with("end", period.end).write(&self.configuration(subject, start, draws))?;
-            }
+            let state = self.state(period);
+            let name = state.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let from_there = short.clone().with("load-state", name).with("begin", period.from);
+            from_there.with("end", period.end).write(&self.configuration(subject, start))?;
         }
         Ok(())
     }
@@ -140,33 +137,13 @@ impl Scenario {
     }
 
     /// The configuration that begins at one of a subject's starts.
-    pub fn configuration(&self, subject: &Subject, start: usize, draws: Draws) -> PathBuf {
-        self.folder.join(format!("conflict-{}-{start}{}.sumocfg", subject.conflict.id, suffix(draws)))
+    pub fn configuration(&self, subject: &Subject, start: usize) -> PathBuf {
+        self.folder.join(format!("conflict-{}-{start}.sumocfg", subject.conflict.id))
     }
 
-    /// SUMO's state at the begin of a period; without its random numbers where new ones are to be drawn.
-    pub fn state(&self, period: &Period, draws: Draws) -> PathBuf {
-        self.folder.join(format!("state-{}{}.xml", period.from, suffix(draws)))
-    }
-
-    /// Writes the states without random numbers.
-    pub fn remove_draws(&self) -> Result<()> {
-        for (_, _, period) in self.starts() {
-            let text = input_file::text(&self.state(period, Draws::Same))?;
-            let without = match (text.find("<rngState"), text.find("</rngState>")) {
-                (Some(begin), Some(end)) => [&text[..begin], &text[end + "</rngState>".len()..]].concat(),
-                _ => text,
-            };
-            output_file::write(&self.state(period, Draws::New), without.as_bytes())?;
-        }
-        Ok(())
-    }
-}
-
-fn suffix(draws: Draws) -> &'static str {
-    match draws {
-        Draws::Same => "",
-        Draws::New => "-new-draws",
+    /// SUMO's state at the begin of a period.
+    pub fn state(&self, period: &Period) -> PathBuf {
+        self.folder.join(format!("state-{}.xml", period.from))
     }
 }
 

@@ -1,0 +1,178 @@
+"""`closecall whatif`: roll-outs of real runs, compared with kinematics and with themselves."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import signal
+import subprocess
+from pathlib import Path
+
+import psutil
+import pytest
+from conftest import NETS, Once, Row, begin, closecall, is_one_message, rows, until
+
+ROLL_OUTS = 60
+
+NODES = '<nodes><node id="a" x="0" y="0"/><node id="b" x="1000" y="0"/></nodes>'
+EDGES = '<edges><edge id="ab" from="a" to="b" numLanes="1" speed="20"/></edges>'
+ROUTES = """<routes><vType id="car" sigma="0" decel="6" maxSpeed="15" length="5"/>
+<vType id="late" sigma="0" decel="9" tau="0.3" speedFactor="1" maxSpeed="15" length="5"/><route id="r" edges="ab"/>
+<vehicle id="leader" type="car" route="r" depart="0" departPos="30" departSpeed="15">
+<stop lane="ab_0" endPos="500" duration="100"/></vehicle>
+<vehicle id="follower" type="late" route="r" depart="20" departPos="10" departSpeed="15"/></routes>"""
+CONFIGURATION = """<configuration><net-file value="a.net.xml"/><route-files value="a.rou.xml"/><end value="70"/>
+<step-length value="0.1"/><step-method.ballistic value="true"/></configuration>"""
+
+
+@pytest.fixture(scope="module")
+def follower(once: Once) -> Path:
+    """A folder with the log of a car that comes up behind one that stands, and its roll-outs."""
+
+    def fill(folder: Path) -> None:
+        for name, text in (("nod", NODES), ("edg", EDGES), ("rou", ROUTES)):
+            (folder / f"a.{name}.xml").write_text(text)
+        (folder / "a.sumocfg").write_text(CONFIGURATION)
+        files = ["-n", "a.nod.xml", "-e", "a.edg.xml", "-o", "a.net.xml"]
+        subprocess.run(["netconvert", *files], cwd=folder, check=True, capture_output=True)
+        run = closecall("run", folder / "a.sumocfg", "--out", folder / "log", "--quiet")
+        assert run.returncode == 0, run.stderr
+        asked = closecall("whatif", folder / "log", "--rollouts", ROLL_OUTS, "--out", folder / "whatif", "--quiet")
+        assert asked.returncode == 0, asked.stderr
+
+    return once("follower", fill)
+
+
+def answers(folder: Path) -> list[Row]:
+    return rows(folder / "whatif.csv")
+
+
+def outcomes(folder: Path, arm: str) -> dict[str, bytes]:
+    """What came of the roll-outs of an arm, by their names."""
+    return {path.parent.name: path.read_bytes() for path in folder.glob(f"series/*_{arm}-*/roll-out.json")}
+
+
+def test_a_roll_out_ends_as_its_drivers_kinematics_say(follower: Path) -> None:
+    crashed = 0
+    for text in outcomes(follower / "whatif", "error").values():
+        outcome = json.loads(text)
+        error = outcome["drivers"][0]
+        response, deceleration = error["response"], error["deceleration"]
+        # 15 m/s, 0.1 s until the brakes hold, 29 m to a car that stands.
+        left = 29.0 - 15.0 * (response + 0.05) - 15.0**2 / (2.0 * deceleration)
+        has_contact = outcome["contact"] is not None
+        # Overlaps of up to 0.3 m are no contact: SUMO's drawing is not that exact.
+        if left > 0.0 or left < -0.35:
+            assert has_contact == (left < 0.0), error
+        crashed += has_contact
+    assert crashed == int(answers(follower / "whatif")[0]["contacts"]) > 0
+
+
+def test_share_integral_and_formula_agree(follower: Path) -> None:
+    answer = answers(follower / "whatif")[0]
+    assert int(answer["roll_outs"]) == ROLL_OUTS
+    assert float(answer["drift"]) < 1e-6
+
+    def later_than(wait: float) -> float:
+        spread = math.log1p((0.28 / 0.92) ** 2)
+        above = math.log(max(wait, 1e-9)) - math.log(0.92) + spread / 2.0
+        return math.erfc(above / math.sqrt(2.0 * spread)) / 2.0
+
+    weights = {a / 100: math.exp(-(((a / 100 - 8.45) / 1.42) ** 2) / 2.0) for a in range(423, 1269)}
+    waits = {a: (29.0 - 15.0**2 / (2.0 * a)) / 15.0 - 0.05 for a in weights}
+    integral = sum(later_than(waits[a]) * weight for a, weight in weights.items()) / sum(weights.values())
+    assert abs(float(answer["crash_probability_at_opening"]) - integral) < 0.01
+    assert float(answer["low"]) < integral < float(answer["high"])
+
+
+def test_the_same_command_does_nothing_again(follower: Path) -> None:
+    before = {path: path.stat().st_mtime_ns for path in (follower / "whatif" / "conflicts").rglob("*.parquet")}
+    again = closecall("whatif", follower / "log", "--rollouts", ROLL_OUTS, "--out", follower / "whatif", "--quiet")
+    assert (again.returncode, again.stderr) == (0, "")
+    assert before == {path: path.stat().st_mtime_ns for path in (follower / "whatif" / "conflicts").rglob("*.parquet")}
+
+
+def test_another_folder_gives_the_same_bytes(follower: Path, tmp_path: Path) -> None:
+    other = closecall("whatif", follower / "log", "--rollouts", 6, "--out", tmp_path / "other", "--quiet")
+    assert other.returncode == 0, other.stderr
+    known = outcomes(follower / "whatif", "error")
+    found = outcomes(tmp_path / "other", "error")
+    assert len(found) == 6 and all(known[name] == text for name, text in found.items())
+
+
+def test_a_killed_whatif_goes_on_and_counts_nothing_twice(follower: Path, tmp_path: Path) -> None:
+    words = ("whatif", follower / "log", "--rollouts", "8", "--out", tmp_path / "killed", "--quiet")
+    with begin(*words) as process:
+        until(lambda: len(outcomes(tmp_path / "killed", "error")) >= 2)
+        os.killpg(process.pid, signal.SIGKILL)
+    assert closecall(*words).returncode == 0
+    known = outcomes(follower / "whatif", "error")
+    found = outcomes(tmp_path / "killed", "error")
+    assert len(found) == 8 and all(known[name] == text for name, text in found.items())
+    assert answers(tmp_path / "killed")[0]["roll_outs"] == "8"
+
+
+def test_a_roll_out_that_crashes_is_lost_and_named(follower: Path, tmp_path: Path) -> None:
+    def third(process: psutil.Process) -> list[psutil.Process]:
+        return [child for child in process.children() if any('"id"' in word for word in words_of(child))]
+
+    with begin("whatif", follower / "log", "--rollouts", "4", "--workers", "1", "--out", tmp_path / "lost") as process:
+        parent = psutil.Process(process.pid)
+        for _ in range(2):
+            until(lambda: third(parent))
+            victim = third(parent)[0]
+            victim.kill()
+            until(lambda: victim.pid not in [child.pid for child in parent.children()])
+        said = process.communicate(timeout=120)
+    assert process.returncode == 1
+    assert "failed twice: killed by signal 9" in said[1]
+    answer = answers(tmp_path / "lost")[0]
+    assert (answer["roll_outs"], answer["lost"]) == ("3", "1")
+    assert "1 roll-out lost" in said[0]
+
+
+def words_of(process: psutil.Process) -> list[str]:
+    """The words of a process; none where it has just ended."""
+    try:
+        return process.cmdline()
+    except psutil.Error:
+        return []
+
+
+def test_the_page_shows_paths_and_clips(follower: Path) -> None:
+    page = (follower / "whatif" / "whatif.html").read_text()
+    assert page.count("<polyline") > 2 * ROLL_OUTS
+    assert "A roll-out with a contact" in page and "A roll-out without" in page
+
+
+def test_a_person_and_a_vehicle_are_rolled_out(tmp_path: Path) -> None:
+    log = tmp_path / "log"
+    config = NETS / "crowd" / "crowd.sumocfg"
+    assert closecall("run", config, "--end", "120", "--out", log, "--quiet", "--", "--no-warnings").returncode == 0
+    with_person = [row for row in rows(log / "conflicts.csv") if "p" in (row["ego"][0], row["foe"][0])]
+    ids = [row["id"] for row in with_person if not row["artefact"] and float(row["begin"]) > 20.0][:2]
+    asked = closecall("whatif", log, *ids, "--rollouts", "3", "--whose", "drawn", "--out", tmp_path / "whatif")
+    assert asked.returncode == 0, asked.stderr
+    assert [answer["conflict"] for answer in answers(tmp_path / "whatif")] == ids
+    for text in outcomes(tmp_path / "whatif", "error").values():
+        # The vehicle's driver errs, never the person.
+        assert len(json.loads(text)["persons"]) == 1 and json.loads(text)["drivers"][0]["response"] > 0.0
+
+
+@pytest.mark.parametrize("error", ["gap", "signal"])
+def test_other_errors_run_too(follower: Path, tmp_path: Path, error: str) -> None:
+    out = tmp_path / "whatif"
+    asked = closecall("whatif", follower / "log", "--rollouts", "2", "--error", error, "--draws", "new", "--out", out)
+    assert asked.returncode == 0, asked.stderr
+    assert f"error: {error}" in (out / "whatif.html").read_text()
+
+
+def test_what_cannot_be_rolled_out_is_one_line(follower: Path, tmp_path: Path) -> None:
+    for words, said in [
+        (("7",), "has no conflict 7"),
+        (("--driver", "nobody"), "neither a file nor one of attentive, distracted, crash-involved"),
+        (("--rollouts", "0"), "0 is not in 1..=100000"),
+    ]:
+        refused = closecall("whatif", follower / "log", *words, "--out", tmp_path / "refused")
+        assert refused.returncode == 2 and said in refused.stderr and is_one_message(refused.stderr), refused.stderr
