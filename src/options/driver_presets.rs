@@ -19,7 +19,7 @@ pub enum DriverModel {
     /// Surprised driver: response time 1.5 s (Green 2000), with the same relative SD; decelerations of the attentive driver.
     Distracted,
     /// Driver of a crash: in naturalistic crashes drivers responded 0.487 s later than in near-crashes and braked 0.018 g more
-    /// weakly (Wood and Zhang 2021); else the attentive driver, with the same relative SD.
+    /// weakly (Wood and Zhang 2020); else the attentive driver, with the same relative SD.
     CrashInvolved,
     /// The competent and careful driver of UN R157, annex 3: 0.4 s to evaluate the risk and 0.75 s until it brakes; 0.774 g, which
     /// 12.65 m/s³ build up in 0.6 s.

@@ -57,8 +57,11 @@ def rolled(scenario: Path, folder: Path, conflicts: int, rollouts: int) -> Itera
     log, out = folder / scenario.stem / "log", folder / scenario.stem / "whatif"
     if not (log / "run.json").exists():
         subprocess.run(["closecall", "run", scenario, "--quiet", "--out", log, "--", "--no-warnings"], check=True)
+    ids = chosen(log, conflicts)
+    if not ids:
+        return
     words = ["--rollouts", str(rollouts), "--from", "worst", "--quiet", "--out", str(out)]
-    subprocess.run(["closecall", "whatif", log, *chosen(log, conflicts), *words], check=False)
+    subprocess.run(["closecall", "whatif", log, *ids, *words], check=False)
     with (out / "whatif.csv").open() as file:
         for row in csv.DictReader(file):
             if int(row["roll_outs"]):

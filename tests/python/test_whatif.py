@@ -62,8 +62,8 @@ def test_a_roll_out_ends_as_its_drivers_kinematics_say(follower: Path) -> None:
         # 15 m/s, 0.1 s until the brakes hold, 29 m to a car that stands.
         left = 29.0 - 15.0 * (response + 0.05) - 15.0**2 / (2.0 * deceleration)
         has_contact = outcome["contact"] is not None
-        # Overlaps of up to 0.3 m are no contact: SUMO's drawing is not that exact.
-        if left > 0.0 or left < -0.35:
+        # Overlaps of up to 0.25 m are grazes, and a step ends up to 5 cm later.
+        if left > 0.0 or left < -0.3:
             assert has_contact == (left < 0.0), error
         crashed += has_contact
     assert crashed == int(answers(follower / "whatif")[0]["contacts"]) > 0
