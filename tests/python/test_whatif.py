@@ -152,11 +152,12 @@ def test_a_person_and_a_vehicle_are_rolled_out(tmp_path: Path) -> None:
     assert closecall("run", config, "--end", "120", "--out", log, "--quiet", "--", "--no-warnings").returncode == 0
     with_person = [row for row in rows(log / "conflicts.csv") if "p" in (row["ego"][0], row["foe"][0])]
     ids = [row["id"] for row in with_person if not row["artefact"] and float(row["begin"]) > 20.0][:2]
-    asked = closecall("whatif", log, *ids, "--rollouts", "3", "--whose", "drawn", "--out", tmp_path / "whatif")
+    asked = closecall("whatif", log, *ids, "--rollouts", "6", "--from", "worst", "--out", tmp_path / "whatif")
     assert asked.returncode == 0, asked.stderr
+    assert sum(int(answer["contacts"]) for answer in answers(tmp_path / "whatif")) > 0
     assert [answer["conflict"] for answer in answers(tmp_path / "whatif")] == ids
     for text in outcomes(tmp_path / "whatif", "error").values():
-        # The vehicle's driver errs, never the person.
+        # The vehicle's driver errs; the person is never steered.
         assert len(json.loads(text)["persons"]) == 1 and json.loads(text)["drivers"][0]["response"] > 0.0
 
 

@@ -36,6 +36,9 @@ pub(crate) struct ReportArgs {
     /// Background map: the page requests its tiles from this server. Without it a page sends no requests.
     #[arg(long, value_name = "URL", conflicts_with = "summary")]
     tiles: Option<TileUrl>,
+    /// Folder that `closecall whatif` wrote: its roll-outs as sections of the page.
+    #[arg(long, value_name = "DIR", conflicts_with = "summary")]
+    whatif: Option<PathBuf>,
     #[command(flatten)]
     filter: ConflictFilter,
 }
@@ -43,10 +46,17 @@ pub(crate) struct ReportArgs {
 /// Writes the page and prints its size.
 pub fn run(arguments: &ReportArgs) -> Result<()> {
     let mut bar = CountBar::new("conflicts", !arguments.quiet);
-    let ReportArgs { folders, against, net, filter, summary, tiles, .. } = arguments;
+    let ReportArgs { folders, against, net, filter, summary, tiles, whatif, .. } = arguments;
     let out = arguments.out.clone().unwrap_or_else(|| if *summary { "summary.html" } else { "report.html" }.into());
-    let request =
-        report::Request { folders, against, net: net.as_deref(), filter, is_summary: *summary, tiles: tiles.as_ref() };
+    let request = report::Request {
+        folders,
+        against,
+        net: net.as_deref(),
+        filter,
+        is_summary: *summary,
+        tiles: tiles.as_ref(),
+        whatif: whatif.as_deref(),
+    };
     let mut progress = |read, all| bar.show(read, all);
     let made = report::write(&request, &out, &mut progress)?;
     drop(bar);

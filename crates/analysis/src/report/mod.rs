@@ -17,6 +17,7 @@ mod tiles;
 
 use std::path::{Path, PathBuf};
 
+use super::batch::whatif::sections;
 use super::dataset::read;
 use super::filter::ConflictFilter;
 use super::logged::{LostRows, Progress, check_keeps_logs};
@@ -31,6 +32,7 @@ pub use tiles::TileUrl;
 /// The marks of a template, each replaced by its part, in the order of the page.
 const TILES: &str = "{{tiles}}";
 const STYLE: &str = "{{style}}";
+const WHAT_IF: &str = "{{whatif}}";
 const DATA: &str = "{{data}}";
 const LIBRARY: &str = "{{library}}";
 const SCRIPTS: &str = "{{scripts}}";
@@ -128,6 +130,8 @@ pub struct Request<'a> {
     pub is_summary: bool,
     /// The server of the background map; none for a page that sends no requests.
     pub tiles: Option<&'a TileUrl>,
+    /// The folder of roll-outs to show; none for none.
+    pub whatif: Option<&'a Path>,
 }
 
 /// Writes a report to `out`.
@@ -135,7 +139,7 @@ pub struct Request<'a> {
 /// # Errors
 /// Those of reading the logs, of an output that is one of them, and of writing `out`.
 pub fn write(request: &Request, out: &Path, progress: &mut Progress) -> Result<Made> {
-    let Request { folders, against, net, filter, is_summary, tiles } = *request;
+    let Request { folders, against, net, filter, is_summary, tiles, whatif } = *request;
     check_keeps_logs(out, &[folders, against].concat(), net)?;
     let conflicts = read(folders, net, filter, progress)?;
     let runs = conflicts.logs.len();
@@ -150,9 +154,10 @@ pub fn write(request: &Request, out: &Path, progress: &mut Progress) -> Result<M
     };
     let (shown, details) = if is_summary { (SUMMARY, Details::SUMMARY) } else { (REPORT, Details::REPORT) };
     let data = data::json(conflicts, before, details, tiles)?;
+    let whatif = whatif.map_or_else(|| Ok(String::new()), sections)?;
     let mut file = OutputFile::create(out)?;
     let mut bytes = 0;
-    page(&shown, tiles, &data, |part| {
+    page(&shown, tiles, &whatif, &data, |part| {
         bytes += part.len();
         Ok(file.append(part.as_bytes())?)
     })?;
@@ -162,7 +167,13 @@ pub fn write(request: &Request, out: &Path, progress: &mut Progress) -> Result<M
 
 /// Writes the page, each mark replaced by its part. The parts themselves are not searched for marks, since an id may look like
 /// one.
-fn page(page: &Page, tiles: Option<&TileUrl>, data: &str, mut write: impl FnMut(&str) -> Result<()>) -> Result<()> {
+fn page(
+    page: &Page,
+    tiles: Option<&TileUrl>,
+    whatif: &str,
+    data: &str,
+    mut write: impl FnMut(&str) -> Result<()>,
+) -> Result<()> {
     let scripts = page.scripts.concat();
     let style = style::sheet();
     let mut rest = page.template;
@@ -170,7 +181,9 @@ fn page(page: &Page, tiles: Option<&TileUrl>, data: &str, mut write: impl FnMut(
     // The policy of the page lets it ask this server only.
     let tiles = tiles.map_or_else(String::new, |tiles| format!(" {}", tiles.origin()));
     let tiles = page.template.contains(TILES).then_some((TILES, &*tiles));
-    let parts = tiles.into_iter().chain([(STYLE, &*style), (DATA, data)]).chain(library).chain([(SCRIPTS, &*scripts)]);
+    let whatif = page.template.contains(WHAT_IF).then_some((WHAT_IF, whatif));
+    let parts = tiles.into_iter().chain([(STYLE, &*style)]).chain(whatif).chain([(DATA, data)]);
+    let parts = parts.chain(library).chain([(SCRIPTS, &*scripts)]);
     for (mark, part) in parts {
         let (before, after) = rest.split_once(mark).unwrap_or((rest, ""));
         write(before)?;
@@ -200,7 +213,7 @@ mod tests {
     #[test]
     fn data_that_looks_like_a_mark_stays_data() {
         let mut text = String::new();
-        page(&REPORT, None, "[\"{{scripts}}\"]", |part| {
+        page(&REPORT, None, "", "[\"{{scripts}}\"]", |part| {
             text += part;
             Ok(())
         })

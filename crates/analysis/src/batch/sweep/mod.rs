@@ -20,6 +20,7 @@ use closecall_run::input::sumo_outputs::{PREFIX, has_outputs};
 pub use seeds::Seeds;
 pub use setting::Setting;
 pub use task::Task;
+pub(super) use task::{log_of, series_of};
 pub use vary::Vary;
 
 /// More runs than this are a typing mistake.

@@ -59,18 +59,28 @@ impl Task {
 
     /// The folder of its series, its clips and what came of its roll-out.
     pub fn beside(&self) -> PathBuf {
-        self.out.join("series").join(format!("{RUN}{}", self.name))
+        series_of(&self.out, &self.name)
     }
 
     /// The folder of its file in the data set, which is a log once the run is done.
     pub fn log(&self) -> PathBuf {
-        data_set(&self.out).join(format!("{RUN}{}", self.name))
+        log_of(&self.out, &self.name)
     }
 
     /// Its file in the data set.
     pub fn file(&self) -> PathBuf {
         self.log().join(PARQUET)
     }
+}
+
+/// The folder of a run's file in a sweep's folder.
+pub(in crate::batch) fn log_of(out: &Path, name: &str) -> PathBuf {
+    data_set(out).join(format!("{RUN}{name}"))
+}
+
+/// The folder of a run's series, its clips and what came of its roll-out.
+pub(in crate::batch) fn series_of(out: &Path, name: &str) -> PathBuf {
+    out.join("series").join(format!("{RUN}{name}"))
 }
 
 /// The folder of the data set in a sweep's folder.

@@ -1,9 +1,9 @@
 //! What the roll-outs of a conflict say.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use super::arms::RolledOut;
 use super::paths::Baseline;
-use super::runs::RolledOut;
 use crate::Result;
 use crate::logged::{ConflictReader, LoggedConflict};
 use crate::statistics::share::{Share, share};
@@ -11,7 +11,7 @@ use closecall::util::units::{Metre, MetrePerSecond, Probability, Second};
 use closecall_run::run::roll_out::Contact;
 
 /// What the roll-outs of a conflict say: a row of `whatif.csv`.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Answer {
     /// The conflict's id in the log.
     pub conflict: u64,
@@ -20,13 +20,17 @@ pub struct Answer {
     /// The foe.
     pub foe: String,
     /// The kind.
-    pub kind: &'static str,
+    pub kind: String,
     /// What the two were doing.
     pub manoeuvre: String,
     /// The severity.
-    pub severity: &'static str,
+    pub severity: String,
     /// When it opens, in s.
     pub begin: Second,
+    /// The conflict point, x in m.
+    pub x: Metre,
+    /// The same, y in m.
+    pub y: Metre,
     /// The roll-outs that ended.
     pub roll_outs: u64,
     /// Those that failed.
@@ -76,10 +80,12 @@ impl Answer {
             conflict: of.id,
             ego: of.ego.clone(),
             foe: of.foe.clone(),
-            kind: of.kind.name(),
+            kind: of.kind.name().to_owned(),
             manoeuvre: of.manoeuvre.clone(),
-            severity: of.severity.name(),
+            severity: of.severity.name().to_owned(),
             begin: of.begin,
+            x: of.x,
+            y: of.y,
             roll_outs: 0,
             lost: 0,
             contacts: 0,

@@ -6,6 +6,7 @@
 //! baseline, which goes on from the same state, not with the run: SUMO's states are not exact everywhere.
 
 mod answer;
+mod arms;
 mod asked;
 mod page;
 mod paths;
@@ -15,5 +16,6 @@ mod table;
 
 pub use answer::Answer;
 pub use asked::{Asked, Draws, Onset, Whose};
+pub use page::sections;
 pub use runs::WhatIf;
 pub use scenario::Tools;

@@ -3,23 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use super::answer::Answer;
+use super::arms::{ANSWERED, BASELINE, ERROR, FILMED, RolledOut, name_of};
 use super::asked::{Asked, Draws, Onset};
 use super::page;
 use super::paths::{Baseline, nearest};
 use super::scenario::{Scenario, Subject, Tools};
 use crate::batch::extract::WHOLE_STATE;
-use crate::batch::sweep::{PlannedRun, Sweep, Task};
-use crate::dataset::nets;
-use crate::logged::{Label, LabelValue, LoggedConflict, record};
+use crate::batch::sweep::{PlannedRun, Sweep};
+use crate::logged::{Label, LabelValue, LoggedConflict};
 use crate::{Error, Result};
-use closecall::traffic::net::Net;
 use closecall_run::run::roll_out::{DriverError, ErringDriver, Outcome, ROLL_OUT, RollOut, Watched};
 
-/// The arms: runs of a conflict that differ in the same way from the others.
-const BASELINE: &str = "baseline";
-const ERROR: &str = "error";
-const ANSWERED: &str = "answered";
-const FILMED: &str = "filmed";
 /// SUMO's seeds are below this.
 const SEEDS: u32 = 1 << 31;
 /// What the other driver is like that answers an error: the median.
@@ -33,21 +27,6 @@ pub struct WhatIf {
     out: PathBuf,
     scenario: Scenario,
     baselines: Vec<std::result::Result<Baseline, String>>,
-}
-
-/// A roll-out that has ended.
-#[derive(Debug)]
-pub(super) struct RolledOut {
-    pub number: u32,
-    pub task: Task,
-    pub outcome: Outcome,
-}
-
-/// The roll-outs of a conflict.
-pub(super) struct Rolled<'a> {
-    pub conflict: &'a LoggedConflict,
-    pub roll_outs: Vec<RolledOut>,
-    pub filmed: Vec<RolledOut>,
 }
 
 impl WhatIf {
@@ -81,8 +60,8 @@ impl WhatIf {
         let sumo = ["--save-state.times", &*times, "--save-state.files", &*files].into_iter().chain(WHOLE_STATE);
         let roll_out = RollOut { watched, ..RollOut::default() };
         let args = self.args(&self.scenario.whole(), self.scenario.seed, &roll_out, &[], sumo.map(str::to_owned))?;
-        let run = PlannedRun { name: "original".to_owned(), args, labels: Vec::new() };
-        Sweep::of_runs(vec![run], &self.out.join("original"), &[self.scenario.settings()])
+        let run = PlannedRun { name: page::ORIGINAL.to_owned(), args, labels: Vec::new() };
+        Sweep::of_runs(vec![run], &self.out.join(page::ORIGINAL), &[self.scenario.settings()])
     }
 
     /// The runs from the saved states in which no driver errs, once the original has ended.
@@ -123,9 +102,12 @@ impl WhatIf {
     /// Those of [`Sweep::of_runs`], and of reading the roll-outs.
     pub fn answered(&self) -> Result<Sweep> {
         let mut runs = Vec::new();
-        for (subject, _) in self.that_happen() {
+        for (subject, baseline) in self.that_happen() {
             for rolled in self.rolled_out(subject)?.iter().filter(|rolled| rolled.outcome.contact.is_some()) {
-                runs.push(self.roll_out(subject, rolled.number, ANSWERED)?);
+                // Persons cannot be steered.
+                if !baseline.persons.contains(&self.drawn_driver(subject, rolled.number).foe) {
+                    runs.push(self.roll_out(subject, rolled.number, ANSWERED)?);
+                }
             }
         }
         self.sweep(runs)
@@ -172,35 +154,10 @@ impl WhatIf {
     /// # Errors
     /// Those of reading the runs and of writing the files.
     pub fn write(&self, answers: &[Answer]) -> Result<[PathBuf; 2]> {
-        let files = ["whatif.csv", "whatif.html"].map(|name| self.out.join(name));
+        let files = [page::TABLE, page::PAGE].map(|name| self.out.join(name));
         Answer::write(answers, &files[0])?;
-        page::write(self, answers, &files[1])?;
+        page::write(&self.out, &self.asked.in_words())?;
         Ok(files)
-    }
-
-    /// The roll-outs of a conflict; none where it does not happen in its baseline.
-    pub(super) fn rolled(&self, conflict: u64) -> Result<Option<Rolled<'_>>> {
-        let Some((subject, _)) = self.that_happen().find(|(subject, _)| subject.conflict.id == conflict) else {
-            return Ok(None);
-        };
-        let (roll_outs, mut filmed) = (self.rolled_out(subject)?, self.outcomes(subject, FILMED)?);
-        filmed.sort_by_key(|run| run.outcome.contact.is_none());
-        Ok(Some(Rolled { conflict: &subject.conflict, roll_outs, filmed }))
-    }
-
-    /// The net; none where it cannot be read.
-    pub(super) fn net(&self) -> Result<Option<Net>> {
-        let original = &self.original()?.tasks[0];
-        if !original.file().exists() {
-            return Ok(None);
-        }
-        let record = serde_json::to_value(record(&original.log())?.1.parse::<serde_json::Value>().ok());
-        Ok(nets::find(None, &[original.log()], &[record.unwrap_or_default()])?.net)
-    }
-
-    /// The folder of the results.
-    pub fn out(&self) -> &Path {
-        &self.out
     }
 
     fn that_happen(&self) -> impl Iterator<Item = (&Subject, &Baseline)> {
@@ -329,11 +286,6 @@ fn watched(subject: &Subject) -> Watched {
     let from = subject.periods.iter().map(|period| period.from).fold(f64::INFINITY, f64::min);
     let until = subject.periods.iter().map(|period| period.end).fold(0.0, f64::max);
     Watched { pair: [ego.clone(), foe.clone()], from, until }
-}
-
-/// The name of a run, or its beginning.
-fn name_of(conflict: u64, arm: &str, number: &str) -> String {
-    format!("conflict-{conflict}_{arm}-{number}")
 }
 
 fn joined(parts: impl Iterator<Item = String>) -> String {

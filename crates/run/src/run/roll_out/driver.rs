@@ -1,7 +1,9 @@
 //! One driver that errs: what SUMO is told about its vehicle in each step.
 
+use super::super::Run;
 use super::course::Course;
-use super::{DrawnError, DriverError, ErringDriver, Run};
+use super::outcome::DrawnError;
+use super::plan::{DriverError, ErringDriver};
 use closecall::detection::measures::accident::BRAKES;
 use closecall::traffic::frame::Row;
 use closecall::traffic::roster::UserIndex;
