@@ -18,6 +18,7 @@ mod playback;
 mod plot;
 mod print;
 pub mod progress;
+mod rare;
 mod regress;
 mod replay;
 mod report;
@@ -74,6 +75,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8 
         Command::Example(arguments) => example::run(&arguments).map(|()| 0),
         Command::Extract(arguments) => extract::run(&arguments, &settings::known(&command()), sumo).map(|()| 0),
         Command::WhatIf(arguments) => whatif::run(&arguments, &settings::known(&command()), sumo),
+        Command::Rare(arguments) => rare::run(*arguments, sumo, &parse::parse_run),
         Command::Export(arguments) => export::run(arguments).map(|()| 0),
         Command::Report(arguments) => report::run(&arguments).map(|()| 0),
         Command::Plot(arguments) => plot::run(&arguments).map(|()| 0),

@@ -13,7 +13,7 @@ use closecall_run::options::{OptionsFile, old_names};
 
 use super::plot;
 use super::sweep;
-use super::{stress, study, whatif};
+use super::{rare, stress, study, whatif};
 
 #[derive(Parser)]
 #[command(name = "closecall", version, about, args_override_self = true)]
@@ -62,6 +62,8 @@ pub(super) enum Command {
     /// Roll conflicts out again with drivers that err: would they have crashed?
     #[command(name = "whatif", args_override_self = true)]
     WhatIf(whatif::WhatIfArgs),
+    /// Estimate a crash rate too rare to wait for, with drivers that now and then respond late
+    Rare(Box<rare::RareArgs>),
     /// Write a log in the format of another tool: GeoJSON, GeoParquet, GeoPackage, sumo-gui, device.ssm
     #[command(args_override_self = true)]
     Export(export::ExportArgs),

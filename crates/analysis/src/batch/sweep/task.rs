@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::logged::{self, Label, LoggedRun, PARQUET, RunTime};
+use crate::logged::{self, Label, LoggedRun, PARQUET, Packed, RunTime};
 use crate::{Error, Result};
 use closecall_run::options::SERIES_FILES;
 use closecall_run::output::clips::CLIPS;
@@ -65,6 +65,11 @@ impl Task {
     /// The folder of its file in the data set, which is a log once the run is done.
     pub fn log(&self) -> PathBuf {
         log_of(&self.out, &self.name)
+    }
+
+    /// The processor time of its run, in s; 0 before it has ended.
+    pub fn processor_time(&self) -> f64 {
+        Packed::of(&self.file()).map_or(0.0, |packed| packed.run_time.map_or(0.0, |time| time.cpu))
     }
 
     /// Its file in the data set.

@@ -192,7 +192,8 @@ impl WhatIf {
             let (response, deceleration) = (MEDIAN, MEDIAN);
             drivers.push(ErringDriver { id: foe, foe: id, error: DriverError::Late, from, response, deceleration });
         }
-        let roll_out = RollOut { watched: vec![watched(subject)], drivers, ends_at_contact: true };
+        let roll_out =
+            RollOut { watched: vec![watched(subject)], drivers, ends_at_contact: true, ..RollOut::default() };
         // A state has the numbers of draws so far; what is drawn follows from the seed.
         let seed = match self.asked.draws {
             Draws::Same => self.scenario.seed,

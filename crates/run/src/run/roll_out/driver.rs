@@ -87,7 +87,8 @@ impl Steered {
                 build_up: profile.driver.build_up().unwrap_or(profile.brakes.build_up),
             };
             let response = course.responds_at - time;
-            *drawn = DrawnError { from: Some(time), response, deceleration: course.deceleration };
+            let (id, deceleration) = (self.asked.id.clone(), course.deceleration);
+            *drawn = DrawnError { id, from: Some(time), response, deceleration };
             self.phase = Phase::Errs(course);
             commands.extend([Command::SpeedMode(UNCHECKED), Command::LaneChangeMode(UNCHECKED)]);
         }

@@ -5,6 +5,7 @@
 
 mod course;
 mod driver;
+mod lapses;
 mod outcome;
 mod plan;
 
@@ -14,16 +15,18 @@ use super::Run;
 use crate::Result;
 use closecall::util::units::SAME_MOMENT;
 use driver::Steered;
+use lapses::Lapsing;
 
 pub use driver::Command;
 pub use outcome::{Contact, DrawnError, Outcome, PathStep, ROLL_OUT};
-pub use plan::{DriverError, ErringDriver, RollOut, Watched};
+pub use plan::{DriverError, ErringDriver, Lapses, RollOut, Watched};
 
 /// A roll-out under way.
 #[derive(Debug)]
 pub struct RollOutRun {
     asked: RollOut,
     drivers: Vec<Steered>,
+    lapsing: Option<Lapsing>,
     outcome: Outcome,
 }
 
@@ -32,7 +35,8 @@ impl RollOutRun {
     pub fn new(asked: RollOut) -> Self {
         let drivers = asked.drivers.iter().cloned().map(Steered::new).collect::<Vec<_>>();
         let outcome = Outcome { drivers: vec![DrawnError::default(); drivers.len()], ..Outcome::default() };
-        Self { asked, drivers, outcome }
+        let lapsing = asked.lapses.clone().map(Lapsing::new);
+        Self { asked, drivers, lapsing, outcome }
     }
 
     /// Takes a step of the run, which is finished; returns what SUMO is to be told about which vehicle. SUMO moves a vehicle by
@@ -43,6 +47,10 @@ impl RollOutRun {
         let watched = self.asked.watched.iter().filter(is_now).flat_map(|watched| &watched.pair).collect::<Vec<_>>();
         if !watched.is_empty() {
             self.outcome.see(run, &watched);
+        }
+        for driver in self.lapsing.iter_mut().flat_map(|lapsing| lapsing.step(run)) {
+            self.drivers.push(Steered::new(driver));
+            self.outcome.drivers.push(DrawnError::default());
         }
         let step = run.step_length().unwrap_or(1.0);
         let mut commands = Vec::new();

@@ -34,6 +34,8 @@ pub type PathStep = (Second, Metre, Metre, Radian, MetrePerSecond);
 /// A driver's error.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct DrawnError {
+    /// The driver's id.
+    pub id: String,
     /// When it would have had to respond, in s; none where no conflict opened.
     pub from: Option<Second>,
     /// Its response time in s.

@@ -6,7 +6,7 @@ use closecall::util::units::{Probability, Second};
 
 /// What is to be done in a roll-out.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, default)]
 pub struct RollOut {
     /// The pairs whose paths are kept.
     pub watched: Vec<Watched>,
@@ -14,6 +14,18 @@ pub struct RollOut {
     pub drivers: Vec<ErringDriver>,
     /// Whether it ends at the first contact of one of the watched.
     pub ends_at_contact: bool,
+    /// The errors of all drivers, of whatever conflict; none where only those above err.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lapses: Option<Lapses>,
+}
+
+/// Lapses of all drivers: in some conflicts that open, the ego's driver responds late.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Lapses {
+    /// The share of conflicts.
+    pub share: Probability,
+    /// Another number draws others.
+    pub seed: u64,
 }
 
 /// A pair whose paths are kept from one time to another.
