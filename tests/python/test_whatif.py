@@ -151,7 +151,8 @@ def test_a_person_and_a_vehicle_are_rolled_out(tmp_path: Path) -> None:
     config = NETS / "crowd" / "crowd.sumocfg"
     assert closecall("run", config, "--end", "120", "--out", log, "--quiet", "--", "--no-warnings").returncode == 0
     with_person = [row for row in rows(log / "conflicts.csv") if "p" in (row["ego"][0], row["foe"][0])]
-    ids = [row["id"] for row in with_person if not row["artefact"] and float(row["begin"]) > 20.0][:2]
+    with_person = [row for row in with_person if not row["artefact"] and float(row["begin"]) > 20.0]
+    ids = [row["id"] for row in sorted(with_person, key=lambda row: -float(row["crash_probability"] or 0))[:2]]
     asked = closecall("whatif", log, *ids, "--rollouts", "6", "--from", "worst", "--out", tmp_path / "whatif")
     assert asked.returncode == 0, asked.stderr
     assert sum(int(answer["contacts"]) for answer in answers(tmp_path / "whatif")) > 0

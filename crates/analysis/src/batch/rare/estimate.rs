@@ -68,16 +68,12 @@ impl CrashRate {
     /// What a reader wants to know first.
     pub fn in_words(&self) -> String {
         let Self { per_hour, low, high, share, conflicts_per_hour, contacts, roll_outs, plain_hours, gain, .. } = self;
+        let [rate, low, high, conflicts, hours, gain] =
+            [per_hour, low, high, conflicts_per_hour, plain_hours, gain].map(|value| number(*value));
         format!(
-            "{} crashes per hour ({} to {}), if a driver responds late in a share of {share} of the {} conflicts per hour: \
-             contact in {contacts} of {roll_outs} roll-outs; plain simulation would need {} times the processor time of \
-             {} h for the same interval",
-            number(*per_hour),
-            number(*low),
-            number(*high),
-            number(*conflicts_per_hour),
-            number(*gain),
-            number(*plain_hours)
+            "{rate} crashes per hour ({low} to {high}) if a driver responds late in a share of {share} of the conflicts, of \
+             which there are {conflicts} per hour\ncontact in {contacts} of {roll_outs} roll-outs; {hours} h of plain \
+             simulation take the same time and leave {gain} times the variance"
         )
     }
 }
