@@ -17,7 +17,7 @@ const APART: Second = 0.1 - 1e-6;
 
 /// A road user in a step: a [`State`] in 28 bytes.
 #[derive(Clone, Copy, Debug)]
-#[repr(packed(4))]
+#[repr(Rust, packed(4))]
 pub(super) struct Place {
     pub x: Metre,
     pub y: Metre,
