@@ -178,8 +178,9 @@ impl<'a, 'py> Session<'a, 'py> {
         self.source.update_paths(py, run)?;
         self.is_unfinished = true;
         self.spent.add(TimedPart::Paths, &mut since);
-        let alone = self.helper.is_none() || run.frame.len() < WORTH_A_THREAD;
-        if self.painter.is_some() || alone {
+        let is_alone = self.painter.is_some() || run.frame.len() < WORTH_A_THREAD;
+        let is_helped = !is_alone && self.helper.as_mut().is_some_and(Helper::is_worthwhile);
+        if !is_helped {
             self.finish_step(run)?;
             since = Instant::now();
         }

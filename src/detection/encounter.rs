@@ -75,6 +75,8 @@ pub struct Nearness {
 pub(crate) struct ChancesIndex {
     pub worker: u32,
     pub place: u32,
+    /// The thread's number of the step: chances are kept until the next one.
+    pub step: u32,
 }
 
 impl PartialEq for ChancesIndex {

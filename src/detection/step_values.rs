@@ -18,7 +18,7 @@ pub(super) struct StepValues<'a> {
     /// The ego's and the foe's.
     pub types: [&'a Profile; 2],
     /// Works out a crash probability.
-    pub crash_probability: &'a dyn Fn(&Nearness, LoggedMeasure) -> Probability,
+    pub crash_probability: &'a dyn Fn(&Nearness, LoggedMeasure) -> Option<Probability>,
 }
 
 impl StepValues<'_> {
@@ -43,9 +43,9 @@ impl StepValues<'_> {
             Measure::FoeDeltaV => Some(delta_v()[1]),
             Measure::ResponseLeft => found.nearness?.values.response_left(),
             Measure::Ttb => found.nearness?.values.ttb(),
-            Measure::CrashProbability => Some(crash_probability(&found.nearness?, LoggedMeasure::CrashProbability)),
+            Measure::CrashProbability => crash_probability(&found.nearness?, LoggedMeasure::CrashProbability),
             Measure::CrashProbabilityBraking => {
-                Some(crash_probability(&found.nearness?, LoggedMeasure::CrashProbabilityBraking))
+                crash_probability(&found.nearness?, LoggedMeasure::CrashProbabilityBraking)
             }
             Measure::InjuryProbability => {
                 let [of_ego, of_foe] = delta_v();

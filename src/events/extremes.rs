@@ -151,7 +151,7 @@ impl Observation<'_> {
         let mut values = near.values;
         for (which, measure) in [CrashProbability, CrashProbabilityBraking].into_iter().enumerate() {
             if known[which].is_none_or(|known| near.crash_at_most[which] > known) {
-                values = values.with(measure, Some((self.around.crash_probability)(near, measure)));
+                values = values.with(measure, (self.around.crash_probability)(near, measure));
             }
         }
         values
@@ -160,7 +160,7 @@ impl Observation<'_> {
     /// The measures of this step with its crash probability.
     pub fn nearness_with_probability(&self) -> Option<Nearness> {
         let near = self.found.nearness?;
-        let value = Some((self.around.crash_probability)(&near, CrashProbability));
+        let value = (self.around.crash_probability)(&near, CrashProbability);
         Some(Nearness { values: near.values.with(CrashProbability, value), ..near })
     }
 
@@ -242,8 +242,8 @@ impl Extremes {
 
     /// Adds a later step of the same event.
     pub fn take(&mut self, seen: &Observation) {
-        let found = self.with_the_same_ego(seen.found);
-        let seen = &Observation { found: &found, ..*seen };
+        let with_the_same_ego = self.with_the_same_ego(seen.found);
+        let seen = &Observation { found: with_the_same_ego.as_ref().unwrap_or(seen.found), ..*seen };
         let pair = LazyCell::new(|| seen.pair());
         // Of margins that differ by rounding only, the first is kept.
         let is_worst = seen.found.margin < self.worst.margin - SAME_MARGIN && self.leads_to_the_contact();
@@ -295,16 +295,16 @@ impl Extremes {
         self.struck.is_none_or(|struck| struck.time > self.end)
     }
 
-    /// A step in which two strike each other, with the ego that it was before: which of two that lie in each other moves faster
-    /// towards the other depends on how deep they do.
-    fn with_the_same_ego(&self, found: &Encounter) -> Encounter {
+    /// A step in which two strike each other, with the ego that it was before, if it is not: which of two that lie in each other
+    /// moves faster towards the other depends on how deep they do.
+    fn with_the_same_ego(&self, found: &Encounter) -> Option<Encounter> {
         let strikes = self.struck.is_some_and(|struck| struck.time > self.end);
         if !strikes || !found.collision || found.ego == self.worst.ego {
-            return *found;
+            return None;
         }
         let Encounter { ego, foe, ego_row, foe_row, .. } = *found;
         let mu = self.worst.mu;
-        Encounter { ego: foe, foe: ego, ego_row: foe_row, foe_row: ego_row, mu, margin: -mu, ..*found }
+        Some(Encounter { ego: foe, foe: ego, ego_row: foe_row, foe_row: ego_row, mu, margin: -mu, ..*found })
     }
 
     /// The kind: that of the contact if they struck each other, or else that of the worst step.

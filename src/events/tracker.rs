@@ -260,7 +260,7 @@ mod tests {
             path: &|_| Vec::new(),
             course: &|_, _| Default::default(),
             chosen: &|_| None,
-            crash_probability: &|near, _| near.crash_at_most[0],
+            crash_probability: &|near, _| Some(near.crash_at_most[0]),
             tadv: &|_| None,
         }
     }

@@ -8,7 +8,7 @@ use typed_index_collections::TiVec;
 
 use super::roster::UserIndex;
 use crate::geometry::Point;
-use crate::util::index::row_of;
+use crate::util::index::{make_room, row_of};
 use crate::util::limits::{ANGLE, HEIGHT, POSITION, SPEED};
 use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
 
@@ -161,6 +161,8 @@ impl Frame {
         fill: impl FnOnce(&mut [State]) -> std::result::Result<(), E>,
     ) -> std::result::Result<(), E> {
         let first = self.len();
+        make_room(&mut self.states, first + users.len());
+        make_room(&mut self.users, first + users.len());
         self.states.resize(first + users.len(), State::NOWHERE);
         self.users.extend(users);
         let filled = fill(&mut self.states[first..]);
@@ -227,7 +229,9 @@ impl Frame {
 
     /// Keeps the states as they are now as those that were reported, before they are changed to those of `behind` s earlier.
     pub(crate) fn begin_to_move_back(&mut self, behind: Second) {
-        self.reported.clone_from(&self.states);
+        self.reported.clear();
+        make_room(&mut self.reported, self.states.len());
+        self.reported.extend_from_slice(&self.states);
         self.behind = behind;
     }
 

@@ -22,6 +22,10 @@ const PARTS: usize = 8;
 /// much as both phases for 50 road users; in a step that takes SUMO longer than this, that is little.
 const AWAKE: Duration = Duration::from_millis(1);
 
+/// The most items that are kept from a helper that cost time: then it is tried again, at up to 4 ms where another program has
+/// its processor, a hundredth of what as many steps of 0.4 ms take.
+const LONGEST_PAUSE: u32 = 1023;
+
 /// The caller's thread and those that help it.
 ///
 /// Only as many threads help as have work, because a waiting thread polls at first. One thread too many on two cores
@@ -96,9 +100,39 @@ pub fn share(busy: usize, count: usize) -> usize {
 /// It polls for a millisecond for the next item before it sleeps.
 pub struct Helper<Item, Done> {
     give: SyncSender<Item>,
-    take_back: Receiver<(Item, Done)>,
+    /// With the time that the work took.
+    take_back: Receiver<(Item, Done, Duration)>,
     /// None when it has panicked.
     thread: Option<JoinHandle<()>>,
+    gain: Gain,
+}
+
+/// Whether a helper saves time: not where its processor is busy with something else.
+#[derive(Default)]
+struct Gain {
+    /// How many items the caller does itself after the next one that takes longer with the helper.
+    pause: u32,
+    /// How many of them are left.
+    left: u32,
+}
+
+impl Gain {
+    /// Whether the next item is one for the helper.
+    fn is_expected(&mut self) -> bool {
+        let is_expected = self.left == 0;
+        self.left = self.left.saturating_sub(1);
+        is_expected
+    }
+
+    /// Takes how long the caller waited for work that took the helper this long.
+    fn take(&mut self, waited: Duration, work: Duration) {
+        if waited > work {
+            self.pause = (2 * self.pause + 1).min(LONGEST_PAUSE);
+            self.left = self.pause;
+        } else {
+            self.pause /= 2;
+        }
+    }
 }
 
 impl<Item: Send + 'static, Done: Send + 'static> Helper<Item, Done> {
@@ -108,21 +142,32 @@ impl<Item: Send + 'static, Done: Send + 'static> Helper<Item, Done> {
         let (give_back, take_back) = sync_channel(1);
         let all = move || {
             while let Some(mut item) = wait_for(&given) {
+                let started = Instant::now();
                 let done = work(&mut item);
-                if give_back.send((item, done)).is_err() {
+                if give_back.send((item, done, started.elapsed())).is_err() {
                     break;
                 }
             }
         };
-        Some(Self { give, take_back, thread: Some(thread::Builder::new().spawn(all).ok()?) })
+        let thread = Some(thread::Builder::new().spawn(all).ok()?);
+        Some(Self { give, take_back, thread, gain: Gain::default() })
+    }
+
+    /// Whether the helper will probably save time with the next item, by the last ones. Ask once for each item.
+    pub fn is_worthwhile(&mut self) -> bool {
+        self.gain.is_expected()
     }
 
     /// Has the helper work on an item while the caller's thread runs `own`; returns when both are done.
     pub fn beside<T>(&mut self, item: Item, own: impl FnOnce() -> T) -> (Item, Done, T) {
         let given = self.give.send(item);
         let own = own();
+        let since = Instant::now();
         match given.ok().and_then(|()| wait_for(&self.take_back)) {
-            Some((item, done)) => (item, done, own),
+            Some((item, done, work)) => {
+                self.gain.take(since.elapsed(), work);
+                (item, done, own)
+            }
             // The helper has panicked: pass the panic on.
             None => {
                 let said = self.thread.take().and_then(|thread| thread.join().err());
@@ -200,6 +245,17 @@ mod tests {
             // The next round finds it asleep.
             thread::sleep(2 * AWAKE);
         }
+    }
+
+    #[test]
+    fn a_helper_that_costs_time_pauses_ever_longer() {
+        let mut gain = Gain::default();
+        let mut pauses = |waited: u64| {
+            gain.take(Duration::from_micros(waited), Duration::from_micros(100));
+            std::iter::from_fn(|| (!gain.is_expected()).then_some(())).count()
+        };
+        assert_eq!([50, 500, 500, 500, 50, 50, 500].map(&mut pauses), [0, 1, 3, 7, 0, 0, 3]);
+        assert_eq!((0..20).map(|_| pauses(500)).max(), Some(LONGEST_PAUSE as usize));
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Scenes with two vehicles, straight on and without a net, compared with the definitions in docs/model.md.
 
+use closecall::detection::encounter::Nearness;
+use closecall::detection::measures::table::LoggedMeasure;
 use closecall::{
     BrakeSystem, Detector, Encounter, Frame, Kind, Mode, Options, PathModel, Profile, Roster, Shortcut, State,
     SumoType, TypeOptions, UserIndex,
@@ -408,4 +410,30 @@ proptest! {
         });
         prop_assert_eq!(near, all);
     }
+}
+
+#[test]
+fn crash_probabilities_of_an_earlier_step_are_none() {
+    let mut roster = Roster::default();
+    let profile = roster.profile(car(&options())).unwrap();
+    let users = [roster.enter("a", profile), roster.enter("b", profile)];
+    let mut detector = Detector::new(&options(), None);
+    let probability = |detector: &Detector, near: &Nearness| {
+        detector.crash_probability(&roster, near, LoggedMeasure::CrashProbabilityBraking)
+    };
+    let mut last = None;
+    // In the third step nobody is there.
+    for (time, cars) in [(0.0, 2), (0.1, 2), (0.2, 0)] {
+        let mut frame = Frame::default();
+        frame.begin(time);
+        for (user, x, speed) in [(users[0], 30.0, 10.0), (users[1], 0.0, 20.0)].into_iter().take(cars) {
+            frame.push(user, State { x, y: 0.0, z: 0.0, heading: 0.0, speed });
+        }
+        let near = detector.step(&frame, &roster).next().and_then(|found| found.nearness);
+        assert!(near.is_none_or(|near| probability(&detector, &near).is_some()));
+        let worked_out = last.and_then(|last: Nearness| last.values.crash_probability_braking());
+        assert_eq!(last.and_then(|last| probability(&detector, &last)), worked_out);
+        last = near;
+    }
+    assert!(last.is_none());
 }

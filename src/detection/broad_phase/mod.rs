@@ -20,6 +20,7 @@ use std::iter::repeat_n;
 use std::ops::Range;
 
 use crate::geometry::{Bounds, Vector};
+use crate::util::index::make_room;
 use crate::util::threads::{Team, share};
 use crate::util::units::Metre;
 use extent::Extent;
@@ -141,6 +142,9 @@ impl<S: Slot> Search<S> {
             place.slot = item.unwrap_or_default();
             item.is_some()
         });
+        make_room(places, count);
+        make_room(slots, count);
+        make_room(boxes, count);
         let others = (0..count as u32).filter(|item| is_first(*item));
         places.extend(others.map(|item| StripEntry { begin: 0.0, strip: 0, slot: item }));
         slots.resize(count, S::default());

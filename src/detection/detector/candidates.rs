@@ -12,6 +12,7 @@ use crate::options::{Mode, PathModel};
 use crate::traffic::frame::{Frame, Row, State};
 use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::{Roster, UserIndex};
+use crate::util::index::make_room;
 use crate::util::limits::{FEWEST_PAIRS, PAIRS};
 use crate::util::threads::share;
 use crate::util::units::{Metre, MetrePerSecond};
@@ -51,6 +52,7 @@ impl Detector {
     /// whether in a pair or not, and what the broad phase leaves out changes no path.
     pub fn track_paths(&mut self, frame: &Frame, roster: &Roster) -> &[u32] {
         if self.paths.len() < roster.len() {
+            make_room(&mut self.paths.raw, roster.len());
             self.paths.resize_with(roster.len(), LanePath::default);
         }
         self.step = (frame.time - self.time).max(0.0);
@@ -144,6 +146,7 @@ impl Detector {
     /// Takes the speeds of the step, and forgets what is known of road users that are absent from it: SUMO's teleports put
     /// them elsewhere.
     fn take_speeds(&mut self, frame: &Frame) {
+        make_room(&mut self.speeds.raw, self.paths.len());
         self.speeds.resize(self.paths.len(), LastSpeed::default());
         let (count, step) = (self.speeds.len(), self.step);
         let busy = self.team.busy(count);

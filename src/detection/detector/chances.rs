@@ -7,7 +7,7 @@
 use std::cell::Cell;
 
 use crate::braking::LateBraking;
-use crate::detection::encounter::Nearness;
+use crate::detection::encounter::{ChancesIndex, Nearness};
 use crate::detection::measures::crash_probability::{bounds, crash_probability};
 use crate::detection::measures::table::LoggedMeasure;
 use crate::detection::measures::ttb::Evasion;
@@ -46,6 +46,7 @@ pub(super) struct Limits {
 pub(super) struct Chances {
     /// The thread's number.
     pub worker: u32,
+    step: u32,
     /// How many probabilities were not worked out since the run began, and how many of them were later.
     left_out: u64,
     asked_for: Cell<u64>,
@@ -58,6 +59,7 @@ pub(super) struct Chances {
 impl Chances {
     /// Forgets those of the last step.
     pub fn clear(&mut self) {
+        self.step = self.step.wrapping_add(1);
         self.of_pairs.clear();
         self.limits.clear();
     }
@@ -71,11 +73,12 @@ impl Chances {
         })
     }
 
-    /// Adds a pair with `left_out` probabilities not worked out; returns its number.
-    pub fn add(&mut self, of_pair: [Chance; 2], left_out: usize) -> u32 {
+    /// Adds a pair with `left_out` probabilities not worked out; returns where it is.
+    pub fn add(&mut self, of_pair: [Chance; 2], left_out: usize) -> ChancesIndex {
         self.left_out += left_out as u64;
+        let place = self.of_pairs.len() as u32;
         self.of_pairs.push(of_pair);
-        self.of_pairs.len() as u32 - 1
+        ChancesIndex { worker: self.worker, place, step: self.step }
     }
 
     /// A lower and an upper bound of a probability.
@@ -98,15 +101,17 @@ impl Chances {
         )
     }
 
-    /// A probability of a pair that was measured.
-    pub fn of(&self, nearness: &Nearness, measure: LoggedMeasure, roster: &Roster) -> Probability {
+    /// A probability of a pair that was measured; none of one that was not worked out in an earlier step.
+    pub fn of(&self, nearness: &Nearness, measure: LoggedMeasure, roster: &Roster) -> Option<Probability> {
         let (known, which) = match measure {
             LoggedMeasure::CrashProbabilityBraking => (nearness.values.crash_probability_braking(), 1),
             _ => (nearness.values.crash_probability(), 0),
         };
-        known.unwrap_or_else(|| {
+        known.or_else(|| {
+            let ChancesIndex { place, step, .. } = nearness.chances;
+            let chances = self.of_pairs.get(place as usize).filter(|_| step == self.step)?;
             self.asked_for.set(self.asked_for.get() + 1);
-            self.value(&self.of_pairs[nearness.chances.place as usize][which], roster)
+            Some(self.value(&chances[which], roster))
         })
     }
 

@@ -10,7 +10,7 @@ use super::step::StepInputs;
 use super::timely::Timely;
 use super::worker::{Findings, Met, Scratch, Worker};
 use crate::braking::{self, LateBraking, Leader, MuModel, rss};
-use crate::detection::encounter::{ChancesIndex, Encounter, Nearness};
+use crate::detection::encounter::{Encounter, Nearness};
 use crate::detection::kind::Kind;
 use crate::detection::measures;
 use crate::detection::measures::accident::BRAKES;
@@ -208,7 +208,7 @@ impl StepInputs<'_> {
             clearance,
             values,
             crash_at_most,
-            chances: ChancesIndex { worker: chances.worker, place: chances.add(each, left_out) },
+            chances: chances.add(each, left_out),
             unavoidable,
             assessment: Assessment::of(&inputs, self.options.severity_thresholds()),
         }

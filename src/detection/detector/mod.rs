@@ -123,8 +123,7 @@ pub struct Detector {
     /// By thread, the slots of the pairs whose areas meet.
     pairs: Vec<Vec<(u32, u32)>>,
     workers: Vec<Worker>,
-    /// None until a step has rear-end pairs.
-    one_between: Option<Box<OneBetween>>,
+    one_between: OneBetween,
     /// Whether the step has more pairs than can be checked.
     is_crowded: bool,
     team: Team,
@@ -165,7 +164,7 @@ impl Detector {
             unplaced: Vec::new(),
             pairs: vec![Vec::new()],
             workers: vec![Worker::default()],
-            one_between: None,
+            one_between: OneBetween::default(),
             is_crowded: false,
             team: Team::default(),
             narrow_phase_alone: Duration::ZERO,

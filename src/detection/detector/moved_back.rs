@@ -21,6 +21,7 @@ use crate::options::Align;
 use crate::traffic::frame::{Frame, State};
 use crate::traffic::profile::Profile;
 use crate::traffic::roster::{Roster, UserIndex};
+use crate::util::index::make_room;
 use crate::util::units::{Metre, Radian, Second};
 
 /// A road user that is further beside its path has not come along it, in m; SUMO's narrowest lanes are wider.
@@ -67,6 +68,7 @@ impl Detector {
             self.move_all_back(frame, roster);
         }
         if self.aligns() {
+            make_room(&mut self.reported.raw, self.paths.len());
             self.reported.resize(self.paths.len(), State::NOWHERE);
             for row in 0..frame.len() as u32 {
                 self.reported[frame.user(row)] = *frame.reported(row);

@@ -1,6 +1,7 @@
 //! Drops a step's rear-end pairs with another vehicle between (see [`super::one_between`]).
 
 use super::one_between::{OneBetween, PathAhead, may_have_one_between};
+use super::worker::Worker;
 use super::{Detector, LEVEL};
 use crate::detection::encounter::Encounter;
 use crate::options::Mode;
@@ -15,17 +16,23 @@ impl Detector {
         if self.options.mode == Mode::Paper || !self.encounters().any(may_have_one_between) {
             return;
         }
-        let mut between = self.one_between.take().unwrap_or_default();
+        let mut between = std::mem::take(&mut self.one_between);
         let pairs = self.pairs.iter().flatten().copied();
         if between.find(frame.len(), self.search.slots(), self.encounters(), pairs) {
             let (mut order, mut workers) = (std::mem::take(&mut self.order), std::mem::take(&mut self.workers));
+            let lend = |workers: &mut [Worker], ahead: &mut PathAhead| {
+                let first = workers.first_mut().map(|worker| &mut worker.found.scratch.halves);
+                first.into_iter().for_each(|halves| std::mem::swap(halves, &mut ahead.bisection));
+            };
+            lend(&mut workers, &mut between.ahead);
             order.retain(&mut workers, |found| {
                 !may_have_one_between(found) || !self.has_one_between(&mut between, frame, roster, found)
             });
-            (self.order, self.workers) = (order, workers);
             between.ahead.bisection.shrink();
+            lend(&mut workers, &mut between.ahead);
+            (self.order, self.workers) = (order, workers);
         }
-        self.one_between = Some(between);
+        self.one_between = between;
     }
 
     fn has_one_between(&mut self, between: &mut OneBetween, frame: &Frame, roster: &Roster, found: &Encounter) -> bool {

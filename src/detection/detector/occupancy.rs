@@ -12,6 +12,7 @@ use crate::geometry::movement::TOLERANCE;
 use crate::geometry::rectangle::Rectangle;
 use crate::options::{Mode, PathModel};
 use crate::traffic::profile::{Carriage, Category};
+use crate::util::index::make_room;
 use crate::util::units::Metre;
 
 /// Initial capacity: few paths have more poses.
@@ -75,6 +76,7 @@ impl OccupancyCache {
     fn build_carriage(&mut self, scene: &StepInputs, user: &User, carriage: Carriage) {
         let all = &mut self.poses;
         let (profile, start) = (scene.profile(user), all.len());
+        make_room(all, start + MOST_POSES);
         scene.course(user, carriage, &[scene.stop(user), scene.reach_of(user)], false, all);
         let poses = &all[start..];
         let axis = poses.first().map_or(user.axis, |pose| pose.axis);
@@ -115,6 +117,7 @@ impl OccupancyCache {
             return;
         }
         built.covers = Some(covers.len() as u32);
+        make_room(covers, covers.len() + (built.poses.1 - built.poses.0).max(1) as usize);
         let (length, width) = (scene.drawn_length_of(user, built.carriage), scene.profile(user).width);
         let poses = &poses[built.poses.0 as usize..built.poses.1 as usize];
         let of = |poses: &[Pose]| match scene.shortcuts.paths_apart {

@@ -33,17 +33,24 @@ impl Detector {
     }
 
     /// A crash probability of a pair that was measured in this step, [`LoggedMeasure::CrashProbability`] or
-    /// [`LoggedMeasure::CrashProbabilityBraking`].
-    pub fn crash_probability(&self, roster: &Roster, nearness: &Nearness, measure: LoggedMeasure) -> Probability {
-        self.workers[nearness.chances.worker as usize].found.chances.of(nearness, measure, roster)
+    /// [`LoggedMeasure::CrashProbabilityBraking`]; none if it is one of an earlier step that was not worked out then.
+    pub fn crash_probability(
+        &self,
+        roster: &Roster,
+        nearness: &Nearness,
+        measure: LoggedMeasure,
+    ) -> Option<Probability> {
+        let worker = self.workers.get(nearness.chances.worker as usize)?;
+        worker.found.chances.of(nearness, measure, roster)
     }
 
     /// An encounter of this step with its crash probabilities.
     pub fn with_probabilities(&self, roster: &Roster, found: &Encounter) -> Encounter {
         let with = |near: Nearness| {
-            let crash_at_most = CHANCES.map(|measure| self.crash_probability(roster, &near, measure));
-            let add = |values: LoggedValues, (measure, value)| values.with(measure, Some(value));
-            let values = CHANCES.into_iter().zip(crash_at_most).fold(near.values, add);
+            let chances = CHANCES.map(|measure| self.crash_probability(roster, &near, measure));
+            let add = |values: LoggedValues, (measure, value)| values.with(measure, value);
+            let values = CHANCES.into_iter().zip(chances).fold(near.values, add);
+            let crash_at_most = [0, 1].map(|which| chances[which].unwrap_or(near.crash_at_most[which]));
             Nearness { values, crash_at_most, ..near }
         };
         Encounter { nearness: found.nearness.map(with), ..*found }

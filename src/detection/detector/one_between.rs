@@ -24,6 +24,7 @@ use crate::traffic::profile::Category;
 use crate::util::units::Metre;
 
 /// Memory that is reused in each step.
+#[derive(Default)]
 pub(super) struct OneBetween {
     /// By row of the frame, the slot.
     pub slots: Vec<u32>,
@@ -35,16 +36,11 @@ pub(super) struct OneBetween {
 }
 
 /// The path that is being followed.
+#[derive(Default)]
 pub(super) struct PathAhead {
     pub poses: Vec<Pose>,
+    /// The first worker's, lent while no worker needs it.
     pub bisection: Bisection,
-}
-
-impl Default for OneBetween {
-    fn default() -> Self {
-        let ahead = PathAhead { poses: Vec::new(), bisection: Bisection::to_keep() };
-        Self { slots: Vec::new(), is_follower: Vec::new(), near: Vec::new(), ahead }
-    }
 }
 
 impl OneBetween {

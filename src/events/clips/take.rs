@@ -60,7 +60,7 @@ struct Step {
     severity: Option<Severity>,
     time_left: Option<Second>,
     /// By the place in [`Take::users`].
-    places: Vec<(usize, Place)>,
+    places: Vec<(u32, Place)>,
     /// A letter for each of the signals.
     shown: Vec<u8>,
 }
@@ -151,7 +151,7 @@ impl Take {
         let danger = step.dangers.iter().find(|danger| danger.pair == self.pair && pair.iter().all(Option::is_some));
         let (severity, time_left) = (danger.map(|danger| danger.severity), danger.and_then(|danger| danger.time_left));
         let near = step.places.iter().filter(is_near).collect::<Vec<_>>();
-        let places = near.into_iter().map(|place| (self.number(place.user, time, source), *place)).collect();
+        let places = near.into_iter().map(|place| (self.number(place.user, time, source) as u32, *place)).collect();
         let shown = self.signals.iter().map(|(signal, _)| source.signals.at(*signal, time).map_or(UNKNOWN, |at| at.0));
         Step { time, severity, time_left, places, shown: shown.collect() }
     }
@@ -183,7 +183,7 @@ impl Take {
         let mut users = self.users.clone();
         for (of, user) in users.iter_mut().enumerate() {
             for step in &steps {
-                let place = step.places.iter().find(|place| place.0 == of).map(|place| place.1);
+                let place = step.places.iter().find(|place| place.0 as usize == of).map(|place| place.1);
                 user.x.push(place.map(|place| rounded(place.x, 2)));
                 user.y.push(place.map(|place| rounded(place.y, 2)));
                 user.heading.push(place.map(|place| rounded(place.heading.into(), 3)));

@@ -47,7 +47,7 @@ pub struct Surroundings<'a> {
     /// The chosen measures of an encounter, if any is chosen.
     pub chosen: &'a dyn Fn(&Encounter) -> Option<Box<ChosenValues>>,
     /// A crash probability of an encounter.
-    pub crash_probability: &'a dyn Fn(&Nearness, LoggedMeasure) -> Probability,
+    pub crash_probability: &'a dyn Fn(&Nearness, LoggedMeasure) -> Option<Probability>,
     /// The time advantage of an encounter.
     pub tadv: &'a dyn Fn(&Encounter) -> Option<Second>,
 }
