@@ -20,6 +20,7 @@ mod print;
 pub mod progress;
 mod regress;
 mod replay;
+mod replay_each;
 mod report;
 mod run;
 mod run_progress;
@@ -61,7 +62,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8 
     let done = caught(|| match cli.command {
         Command::Run(arguments) => run::run(*arguments, sumo).map(|()| 0),
         Command::Sweep(arguments) => sweep::run(*arguments, sumo, &parse::parse_run),
-        Command::Replay(arguments) => replay::run(*arguments, sumo).map(|()| 0),
+        Command::Replay(arguments) => replay::run(*arguments, sumo),
         Command::Regress(arguments) => regress::run(arguments, &settings::known(&command()), sumo),
         Command::Mu(arguments) => mu::run(&arguments).map(|()| 0),
         Command::Stress(arguments) => stress::run(&arguments).map(|()| 0),
