@@ -1,6 +1,6 @@
 //! Conflicts of several runs, worst first; of many, only the worst are kept.
 
-use std::cmp::Ordering;
+use std::cmp::{Ordering, Reverse};
 
 use closecall_run::output::rank::Rank;
 use closecall_run::output::schema::LoggedConflict;
@@ -19,26 +19,37 @@ pub(crate) struct RunConflict {
     pub conflict: LoggedConflict,
 }
 
-/// Worst first; equal ones in the order of the logs.
+/// What conflicts are sorted by, worst first; equal ones in the order of the logs.
+type Key = (Reverse<Rank>, u32, u64);
+
+fn key(run: u32, conflict: &LoggedConflict) -> Key {
+    (Reverse(conflict.into()), run, conflict.id)
+}
+
 fn worst_first(a: &RunConflict, b: &RunConflict) -> Ordering {
-    let rank = |kept: &RunConflict| Rank::from(&kept.conflict);
-    rank(b).cmp(&rank(a)).then_with(|| (a.run, a.conflict.id).cmp(&(b.run, b.conflict.id)))
+    key(a.run, &a.conflict).cmp(&key(b.run, &b.conflict))
 }
 
 /// The [`MOST`] worst conflicts: memory stays bounded however many there are.
 #[derive(Debug, Default)]
 pub(crate) struct KeptConflicts {
     kept: Vec<RunConflict>,
+    /// As many as are kept are worse than this.
+    bound: Option<Key>,
     seen: u64,
 }
 
 impl KeptConflicts {
-    /// Adds a conflict.
-    pub fn push(&mut self, conflict: RunConflict) {
+    /// Adds a conflict; copies it only if it may be kept.
+    pub fn push(&mut self, run: u32, conflict: &LoggedConflict) {
         self.seen += 1;
-        self.kept.push(conflict);
+        if self.bound.is_some_and(|bound| key(run, conflict) >= bound) {
+            return;
+        }
+        self.kept.push(RunConflict { run, conflict: conflict.clone() });
         if self.kept.len() >= MOST + WAITING {
-            self.kept.select_nth_unstable_by(MOST, worst_first);
+            let (_, bound, _) = self.kept.select_nth_unstable_by(MOST, worst_first);
+            self.bound = Some(key(bound.run, &bound.conflict));
             self.kept.truncate(MOST);
         }
     }

@@ -84,15 +84,14 @@ pub fn read(
     let (mut all, mut set_aside) = (0_u64, SetAside::new());
     for (run, log) in (0..).zip(&logs) {
         let mut conflicts = ConflictReader::open(log)?.with_snapshots();
-        for conflict in &mut conflicts {
-            let conflict = conflict?;
+        while let Some(conflict) = conflicts.next_row()? {
             reading.count(1);
-            if filter.sets_aside(&conflict, &mut set_aside) {
+            if filter.sets_aside(conflict, &mut set_aside) {
                 continue;
             }
             all += 1;
-            if filter.passes(&conflict) {
-                worst.push(RunConflict { run, conflict });
+            if filter.passes(conflict) {
+                worst.push(run, conflict);
             }
         }
         lost.extend(conflicts.lost());

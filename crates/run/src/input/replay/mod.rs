@@ -19,7 +19,7 @@ pub mod lights;
 mod lists;
 mod names;
 mod net_match;
-mod number;
+pub(super) mod number;
 mod parked;
 mod parquet;
 pub mod recorded_step;

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::io::{BufRead, Read};
 use std::path::Path;
 
+use crate::input::replay::number::number as parsed;
 use crate::util::header::Wanted;
 use crate::util::input_file::{self, ShortRows, longer};
 use crate::util::parquet_rows::ParquetRows;
@@ -32,7 +33,7 @@ impl Cell<'_> {
             Self::Number(number) => Some(*number),
             Self::Text(text) => match text.trim() {
                 "" => return Ok(None),
-                text => text.parse().ok(),
+                text => parsed(text.as_bytes()),
             },
         };
         number
