@@ -18,7 +18,7 @@ use closecall::traffic::net::Net;
 use closecall::util::units::Second;
 use closecall_run::output::schema::LoggedConflict;
 use closecall_run::output::summary::{SetAside, in_words};
-use kept::{KeptConflicts, RunConflict};
+use kept::{KeptConflicts, MOST, RunConflict};
 use nets::Ground;
 
 /// The conflicts of several logs; of more than 300,000, the worst.
@@ -79,7 +79,7 @@ pub fn read(
     let known = (0..).zip(&runs).filter_map(|(place, run)| Some((place, run.as_ref()?)));
     let known = known.filter(|(_, run)| run.summary.steps > 0).collect::<Vec<_>>();
     let mut reading = Reading::new(known.iter().map(|(_, run)| run.conflicts()).sum(), progress);
-    let mut worst = KeptConflicts::default();
+    let mut worst = KeptConflicts::new(MOST);
     let mut lost = Vec::new();
     let (mut all, mut set_aside) = (0_u64, SetAside::new());
     for (run, log) in (0..).zip(&logs) {
