@@ -7,6 +7,7 @@
 use ecow::EcoString;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
+use super::logged_measures::LoggedMeasures;
 use super::place::{edge_of, junction_of, on_lane};
 use super::value::Field;
 use crate::util::decimal;
@@ -67,19 +68,30 @@ macro_rules! columns {
         #[derive(Clone, Debug, PartialEq)]
         pub struct LoggedConflict {
             $( $(#[doc = $meaning])+ pub $name: $type, )+
-            $( $(#[doc = $chosen_meaning])+ pub $chosen: Option<$unit>, )+
+            /// The measures that its run was told to log.
+            pub chosen: LoggedMeasures,
         }
 
         /// The columns of `conflicts.csv`, in their order.
         pub static COLUMNS: [Column; [$(stringify!($name),)+ $(stringify!($chosen)),+].len()] = [
             $( column!($name: $type, $presence, $($meaning)+), )+
-            $( column!($chosen: Option<$unit>, Chosen, $($chosen_meaning)+), )+
+            $( Column {
+                name: stringify!($chosen),
+                meaning: concat!($($chosen_meaning),+),
+                presence: Presence::Chosen,
+                column_type: ColumnType::Number,
+                rust_type: stringify!(Option<$unit>),
+                get: |conflict| conflict.chosen.of(ChosenMeasure::$variant).map_or(Value::Missing, Value::Number),
+                set: |conflict, value| Ok(conflict.chosen.set(ChosenMeasure::$variant, Field::from_value(value)?)),
+            }, )+
         ];
 
         impl LoggedConflict {
             /// The log's row of a conflict.
             pub fn new($conflict: &Conflict, $context: Context) -> Self {
-                Self { $( $name: $value, )+ $( $chosen: $conflict.chosen(ChosenMeasure::$variant), )+ }
+                let mut chosen = LoggedMeasures::default();
+                ChosenMeasure::ALL.into_iter().for_each(|measure| chosen.set(measure, $conflict.chosen(measure)));
+                Self { $( $name: $value, )+ chosen }
             }
 
             /// A conflict from its cells; `cell` gets the place of a column and returns what is there.
@@ -90,7 +102,11 @@ macro_rules! columns {
                 let mut columns = COLUMNS.iter().enumerate();
                 Ok(Self {
                     $( $name: next_field(&mut columns, &cell)?, )+
-                    $( $chosen: next_field(&mut columns, &cell)?, )+
+                    chosen: {
+                        let mut chosen = LoggedMeasures::default();
+                        $( chosen.set(ChosenMeasure::$variant, next_field::<Option<$unit>>(&mut columns, &cell)?); )+
+                        chosen
+                    },
                 })
             }
         }
