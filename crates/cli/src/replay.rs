@@ -57,10 +57,10 @@ pub(crate) struct ReplayArgs {
     pub(super) threads: Option<u8>,
     /// Check each file as a recording of its own, in parallel: its log goes to a folder of its name in that of --out. All
     /// other options hold for each; --threads is then 1 by default.
-    #[arg(long, requires = "out", conflicts_with = "explain")]
+    #[arg(long, help_heading = "Run", requires = "out", conflicts_with = "explain")]
     pub(super) each: bool,
     /// Recordings at the same time, with --each [default: one per processor].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", help_heading = "Run", value_parser = clap::value_parser!(u16).range(1..))]
     pub(super) workers: Option<u16>,
     #[command(flatten)]
     pub(super) check: CheckArgs,

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use super::error::{Error, Result};
 use super::print::{print, value};
@@ -41,13 +41,22 @@ pub(super) fn run(
     let logs = logs(&arguments.recordings, out)?;
     let quiet = arguments.check.quiet;
     let mut bar = CountBar::new("recordings", !quiet);
+    let complete = AtomicU64::new(0);
     let mut pool = Pool {
         workers: arguments.workers.map_or_else(processors, usize::from),
         interrupted,
         progress: &mut |done, all| bar.show(done, all),
     };
-    let checked = pool.run(&logs, |(log, recording), stop| one(arguments, options, net, recording, log, stop))?;
+    let checked = pool.run(&logs, |(log, recording), stop| {
+        let checked = one(arguments, options, net, recording, log, stop);
+        complete.fetch_add(checked.1.is_ok().into(), Ordering::Relaxed);
+        checked
+    });
     drop(bar);
+    let checked = checked.map_err(|error| match error.into() {
+        Error::Run(RunError::Stopped) => Error::InterruptedEach(complete.into_inner(), logs.len() as u64),
+        other => other,
+    })?;
     let mut status = 0;
     for ((log, recording), (summary, outcome)) in logs.iter().zip(checked) {
         if let Err(error) = outcome {
