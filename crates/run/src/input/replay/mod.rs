@@ -19,7 +19,7 @@ pub mod lights;
 mod lists;
 mod names;
 mod net_match;
-pub(super) mod number;
+mod number;
 mod parked;
 mod parquet;
 pub mod recorded_step;

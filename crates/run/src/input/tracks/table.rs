@@ -4,9 +4,6 @@ use std::borrow::Cow;
 use std::io::{BufRead, Read};
 use std::path::Path;
 
-use smallvec::SmallVec;
-
-use crate::input::replay::number::number as parsed;
 use crate::util::header::Wanted;
 use crate::util::input_file::{self, ShortRows, longer};
 use crate::util::parquet_rows::ParquetRows;
@@ -35,7 +32,7 @@ impl Cell<'_> {
             Self::Number(number) => Some(*number),
             Self::Text(text) => match text.trim() {
                 "" => return Ok(None),
-                text => parsed(text.as_bytes()),
+                text => text.parse().ok(),
             },
         };
         number
@@ -98,7 +95,7 @@ pub(super) fn read(
             return Ok((!reader.get_ref().has_ended()).then(|| maybe_cut(path)));
         }
         let text = |place: usize| record.get(place).map_or(Cell::Missing, |text| Cell::Text(Cow::Borrowed(text)));
-        let cells = columns.iter().map(|(place, _)| text(*place)).collect::<SmallVec<[_; 16]>>();
+        let cells = columns.iter().map(|(place, _)| text(*place)).collect::<Vec<_>>();
         if !row(&cells).map_err(|why| Error::line(path, line, why))? {
             return Ok(None);
         }
