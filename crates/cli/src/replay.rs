@@ -8,7 +8,6 @@ use clap::Args;
 use super::check_args::CheckArgs;
 use super::error::{Error, Result};
 use super::progress::Progress;
-use super::replay_each;
 use super::sumo::Sumo;
 use closecall::traffic::net::Net;
 use closecall::util::remark::Remark;
@@ -85,25 +84,18 @@ pub(super) struct Asking<'a> {
     pub shows_progress: bool,
 }
 
-/// Checks the recording, or each of them, and prints the summary; returns the exit status.
-pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<u8> {
+/// Checks the recording and prints the summary.
+pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     let recording = arguments.recording().to_owned();
-    let out = arguments.check.log_folder(&recording);
-    let options = arguments.check.checked(&out)?;
-    let folder = arguments.check.claim(&out)?;
+    let Prepared { options, folder, net } = prepare(&arguments)?;
     let out = folder.path().to_owned();
-    let net = arguments.net.as_deref().map(closecall_run::net::read).transpose()?.map(Arc::new);
-    let mut never = || false;
-    // From its first call on, an interrupt no longer ends the process, so it is first called when there are results.
-    let interrupted = sumo.map_or(&mut never as &mut dyn FnMut() -> bool, |sumo| sumo.interrupted);
-    if arguments.each {
-        return replay_each::run(&arguments, &options, net.as_ref(), &out, interrupted);
-    }
     let quiet = arguments.check.quiet;
     let print = |remark: &Remark| eprintln!("closecall: {remark}");
+    // From its first call on, an interrupt no longer ends the process, so it is first called when there are results.
+    let mut never = || false;
     let asking = Asking {
         stopped: &mut || false,
-        interrupted,
+        interrupted: sumo.map_or(&mut never as &mut dyn FnMut() -> bool, |sumo| sumo.interrupted),
         remark: if quiet { &|_| () } else { &print },
         shows_progress: !quiet,
     };
@@ -112,7 +104,24 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<u8> {
     if let Some(summary) = summary {
         arguments.check.finish(&summary, &recording, &out)?;
     }
-    outcome.map(|()| 0)
+    outcome
+}
+
+/// What all recordings of a command share.
+pub(super) struct Prepared {
+    pub options: RunOptions,
+    /// The folder of --out.
+    pub folder: LogFolder,
+    pub net: Option<Arc<Net>>,
+}
+
+/// Checks the options, claims the folder and reads the net.
+pub(super) fn prepare(arguments: &ReplayArgs) -> Result<Prepared> {
+    let out = arguments.check.log_folder(arguments.recording());
+    let options = arguments.check.checked(&out)?;
+    let folder = arguments.check.claim(&out)?;
+    let net = arguments.net.as_deref().map(closecall_run::net::read).transpose()?.map(Arc::new);
+    Ok(Prepared { options, folder, net })
 }
 
 /// Checks one recording, which may be several tables; returns its summary, if there are results to show, and how its steps

@@ -8,7 +8,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use super::error::{Error, Result};
 use super::print::{print, value};
 use super::progress::CountBar;
-use super::replay::{Asking, ReplayArgs, check};
+use super::replay::{Asking, Prepared, ReplayArgs, check, prepare};
+use super::sumo::Sumo;
 use closecall::detection::kind::Severity;
 use closecall::traffic::net::Net;
 use closecall::util::remark::Remark;
@@ -22,17 +23,13 @@ use closecall_run::output::log;
 use closecall_run::output::summary::Summary;
 use closecall_run::util::panics::caught;
 
-/// Checks each recording into a folder of its name in `out`; returns the greatest of their exit statuses.
-pub(super) fn run(
-    arguments: &ReplayArgs,
-    options: &RunOptions,
-    net: Option<&Arc<Net>>,
-    out: &Path,
-    interrupted: &mut dyn FnMut() -> bool,
-) -> Result<u8> {
+/// Checks each recording into a folder of its name in that of --out; returns the greatest of their exit statuses.
+pub(super) fn run(arguments: &ReplayArgs, sumo: Option<Sumo>) -> Result<u8> {
     if let Some((option, _)) = arguments.check.outputs.files().next() {
         return Err(value(format!("{option}: all recordings would write the same file")));
     }
+    let Prepared { options, folder, net } = prepare(arguments)?;
+    let out = folder.path();
     let own = out.join(log::CONFLICTS);
     if own.exists() {
         let message = "this is the log of a single recording, which would count as one of these: choose another --out";
@@ -42,13 +39,14 @@ pub(super) fn run(
     let quiet = arguments.check.quiet;
     let mut bar = CountBar::new("recordings", !quiet);
     let complete = AtomicU64::new(0);
+    let mut never = || false;
     let mut pool = Pool {
         workers: arguments.workers.map_or_else(processors, usize::from),
-        interrupted,
+        interrupted: sumo.map_or(&mut never as &mut dyn FnMut() -> bool, |sumo| sumo.interrupted),
         progress: &mut |done, all| bar.show(done, all),
     };
     let checked = pool.run(&logs, |(log, recording), stop| {
-        let checked = one(arguments, options, net, recording, log, stop);
+        let checked = one(arguments, &options, net.as_ref(), recording, log, stop);
         complete.fetch_add(checked.1.is_ok().into(), Ordering::Relaxed);
         checked
     });
