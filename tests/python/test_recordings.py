@@ -50,6 +50,26 @@ def written(folder: Path, text: str, name: str = "t.csv") -> Path:
     return folder / name
 
 
+def test_each_of_several_recordings_gets_its_own_log(tmp_path: Path) -> None:
+    files = [written(tmp_path, lines(steps=steps), f"take{steps}.csv") for steps in (3, 4, 5)]
+    wrong = written(tmp_path, lines().replace("a,1", ",1"), "wrong.csv")
+    out = tmp_path / "out"
+    shared = ("--path", "straight", "--columns", COLUMNS)
+    done = closecall("replay", "--each", *files, wrong, *shared, "--out", out, "--workers", "2")
+    assert done.returncode == 2
+    assert "wrong.csv, line 4: column who: an id is needed" in done.stderr
+    assert sorted(log.name for log in out.iterdir()) == ["take3", "take4", "take5"]
+    for file in files:
+        replay(file, *shared)
+        alone, log = file.with_suffix(".log"), out / file.stem
+        assert f"{log}: 1 conflict, " in done.stdout
+        for name in ("conflicts.csv", "run.json"):
+            assert (log / name).read_bytes() == (alone / name).read_bytes()
+    (out / "conflicts.csv").touch()
+    done = closecall("replay", "--each", *files, *shared, "--out", out)
+    assert done.returncode == 2 and "the log of a single recording" in done.stderr
+
+
 @pytest.mark.parametrize(
     ("text", "columns", "said"),
     [

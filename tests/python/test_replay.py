@@ -6,6 +6,7 @@ import gzip
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -258,6 +259,23 @@ def test_ctrl_c_ends_a_replay_cleanly(scenario: Copy, tmp_path: Path) -> None:
     assert sum(count["count"] for count in found["summary"]["conflicts"]) == len(
         rows(tmp_path / "out" / "conflicts.csv")
     )
+
+
+def test_ctrl_c_ends_several_replays_cleanly(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("town")
+    recording = record(config, "fcd.xml", "--end", "25")
+    repeat(recording, 8, 25)
+    copy = Path(shutil.copy(recording, tmp_path / "copy.xml"))
+    words = ("--quiet", "--net", config.with_suffix(".net.xml"), "--out", tmp_path / "out", "--workers", "2")
+    process = begin("replay", "--each", recording, copy, *words)
+    for name in ("fcd", "copy"):
+        wait_for_rows(tmp_path / "out" / name / "conflicts.csv", process, 2)
+    process.send_signal(signal.SIGINT)
+    _, message = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert message == "closecall: interrupted after 0 of 2 recordings; each log has all conflicts so far\n"
+    for name in ("fcd", "copy"):
+        assert json.loads((tmp_path / "out" / name / "run.json").read_text())["complete"] is False
 
 
 PARKS = """<routes><vType id="d" sigma="0" speedDev="0"/>

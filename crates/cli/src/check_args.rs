@@ -70,15 +70,24 @@ impl CheckArgs {
         Ok(options)
     }
 
+    /// Completes the log in the format that was asked for.
+    ///
+    /// # Errors
+    /// Those of writing the log anew.
+    pub fn complete(&self, log: &Path) -> Result<()> {
+        if self.outputs.log_format == LogFormat::Parquet {
+            pack_in_place(log)?;
+        }
+        Ok(())
+    }
+
     /// Completes the log in the format that was asked for, and prints what was found in a scenario or recording, unless only
     /// errors are wanted.
     ///
     /// # Errors
     /// Those of writing the log anew.
     pub fn finish(&self, summary: &Summary, input: &Path, log: &Path) -> Result<()> {
-        if self.outputs.log_format == LogFormat::Parquet {
-            pack_in_place(log)?;
-        }
+        self.complete(log)?;
         if self.quiet {
             return Ok(());
         }

@@ -22,6 +22,9 @@ pub enum Error {
     /// The user ended a sweep: how many of all runs are done.
     #[error("interrupted after {0} of {1} runs; repeat the command to continue")]
     Paused(usize, usize),
+    /// The user ended the checks of several recordings: how many of all are complete.
+    #[error("interrupted after {0} of {1} recordings; each log has all conflicts so far")]
+    InterruptedEach(u64, u64),
 }
 
 impl From<closecall_analysis::Error> for Error {

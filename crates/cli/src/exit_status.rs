@@ -23,7 +23,9 @@ impl Error {
             Self::Exceeded(..) | Self::Run(RunError::Failed { .. }) => FAILED,
             Self::Analysis(AnalysisError::Lost(_)) | Self::Run(RunError::CutShort { .. }) => INCOMPLETE,
             Self::Run(RunError::Internal(_)) => INTERNAL,
-            Self::Paused(..) | Self::Run(RunError::Interrupted { .. } | RunError::Stopped) => INTERRUPTED,
+            Self::Paused(..)
+            | Self::InterruptedEach(..)
+            | Self::Run(RunError::Interrupted { .. } | RunError::Stopped) => INTERRUPTED,
             Self::Run(_) | Self::Analysis(_) | Self::Value(_) => UNUSABLE,
         }
     }

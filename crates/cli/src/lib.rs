@@ -21,6 +21,7 @@ pub mod progress;
 mod rare;
 mod regress;
 mod replay;
+mod replay_each;
 mod report;
 mod run;
 mod run_progress;
@@ -63,6 +64,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8 
     let done = caught(|| match cli.command {
         Command::Run(arguments) => run::run(*arguments, sumo).map(|()| 0),
         Command::Sweep(arguments) => sweep::run(*arguments, sumo, &parse::parse_run),
+        Command::Replay(arguments) if arguments.each => replay_each::run(&arguments, sumo),
         Command::Replay(arguments) => replay::run(*arguments, sumo).map(|()| 0),
         Command::Regress(arguments) => regress::run(arguments, &settings::known(&command()), sumo),
         Command::Mu(arguments) => mu::run(&arguments).map(|()| 0),

@@ -2,6 +2,7 @@
 //! that ask what would have happened otherwise.
 
 pub mod extract;
+pub mod pool;
 pub mod rare;
 pub mod regress;
 pub mod sweep;

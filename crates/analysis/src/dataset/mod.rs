@@ -18,7 +18,7 @@ use closecall::traffic::net::Net;
 use closecall::util::units::Second;
 use closecall_run::output::schema::LoggedConflict;
 use closecall_run::output::summary::{SetAside, in_words};
-use kept::{KeptConflicts, RunConflict};
+use kept::{KeptConflicts, MOST, RunConflict};
 use nets::Ground;
 
 /// The conflicts of several logs; of more than 300,000, the worst.
@@ -74,32 +74,24 @@ pub fn read(
     filter.check()?;
     let logs = log_folders(folders)?;
     let mut records = logs.iter().map(|log| logs::record(log)).collect::<Result<Vec<_>>>()?;
-    let runs = records.iter().map(logs::run).collect::<Vec<_>>();
-    // A run without a result belongs to no variant.
-    let known = (0..).zip(&runs).filter_map(|(place, run)| Some((place, run.as_ref()?)));
-    let known = known.filter(|(_, run)| run.summary.steps > 0).collect::<Vec<_>>();
-    let mut reading = Reading::new(known.iter().map(|(_, run)| run.conflicts()).sum(), progress);
-    let mut worst = KeptConflicts::default();
+    let (mut variants, expected) = variants_of(&records);
+    let mut reading = Reading::new(expected, progress);
+    let mut worst = KeptConflicts::new(MOST);
     let mut lost = Vec::new();
     let (mut all, mut set_aside) = (0_u64, SetAside::new());
     for (run, log) in (0..).zip(&logs) {
         let mut conflicts = ConflictReader::open(log)?.with_snapshots();
-        for conflict in &mut conflicts {
-            let conflict = conflict?;
+        while let Some(conflict) = conflicts.next_row()? {
             reading.count(1);
-            if filter.sets_aside(&conflict, &mut set_aside) {
+            if filter.sets_aside(conflict, &mut set_aside) {
                 continue;
             }
             all += 1;
-            if filter.passes(&conflict) {
-                worst.push(RunConflict { run, conflict });
+            if filter.passes(conflict) {
+                worst.push(run, conflict);
             }
         }
         lost.extend(conflicts.lost());
-    }
-    let mut variants = Variants::of(&known.iter().map(|(_, run)| *run).collect::<Vec<_>>());
-    for variant in &mut variants.all {
-        variant.runs.iter_mut().for_each(|run| *run = known[*run].0);
     }
     let mut ground = nets::find(net, &logs, &records)?;
     // A record without steps is that of a run that has begun; null means that the record is missing.
@@ -138,6 +130,18 @@ pub fn read(
     let conflicts = worst.into_sorted();
     let variants = variants.all;
     Ok(Conflicts { logs, records, variants, ground, conflicts, seen, set_aside: aside, filter, scope, named, lost })
+}
+
+/// The variants of the runs with these records, and how many conflicts those counted. A run without a result belongs to none.
+fn variants_of(records: &[serde_json::Value]) -> (Variants, u64) {
+    let runs = records.iter().map(logs::run).collect::<Vec<_>>();
+    let known = (0..).zip(&runs).filter_map(|(place, run)| Some((place, run.as_ref()?)));
+    let known = known.filter(|(_, run)| run.summary.steps > 0).collect::<Vec<_>>();
+    let mut variants = Variants::of(&known.iter().map(|(_, run)| *run).collect::<Vec<_>>());
+    for variant in &mut variants.all {
+        variant.runs.iter_mut().for_each(|run| *run = known[*run].0);
+    }
+    (variants, known.iter().map(|(_, run)| run.conflicts()).sum())
 }
 
 impl Conflicts {

@@ -98,7 +98,7 @@ impl ConflictFilter {
     pub(crate) fn sets_aside(&self, conflict: &LoggedConflict, set_aside: &mut SetAside) -> bool {
         let counts = self.counts(conflict);
         if !counts {
-            *set_aside.entry(conflict.artefact.clone()).or_default() += 1;
+            *set_aside.entry(conflict.artefact.to_string()).or_default() += 1;
         }
         !counts
     }

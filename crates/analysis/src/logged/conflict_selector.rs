@@ -43,7 +43,7 @@ fn worst(folder: &Path, place: usize) -> Result<u64> {
         if conflict.artefact.is_empty() {
             found.push((Rank::from(&conflict), Reverse(conflict.id)));
         } else {
-            *set_aside.entry(conflict.artefact).or_default() += 1;
+            *set_aside.entry(conflict.artefact.into()).or_default() += 1;
         }
     }
     found.sort_unstable_by(|a, b| b.cmp(a));

@@ -84,7 +84,7 @@ fn picture(playback: &Playback, time: &Loop) -> String {
 
 fn heading(playback: &Playback) -> String {
     let conflict = &playback.conflict;
-    let what = conflict.manoeuvre.replace('_', " ");
+    let what = conflict.manoeuvre.as_str().replace('_', " ");
     let kind = conflict.kind.name().replace('_', "-");
     let what = if what.is_empty() { kind } else { format!("{kind}, {what}") };
     let crash = if conflict.collision { ", collision" } else { "" };

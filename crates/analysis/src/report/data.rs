@@ -1,5 +1,6 @@
 //! The page's data as JSON: columns instead of rows, numbers rounded, repeated words once.
 
+use std::fmt::Write;
 use std::path::PathBuf;
 
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -142,51 +143,79 @@ impl<'a> Words<'a> {
     }
 }
 
+/// Writes columns of values that are no texts.
+struct ColumnWriter<'a> {
+    text: &'a mut String,
+}
+
+impl ColumnWriter<'_> {
+    /// Appends a column; one with the same value in every row becomes that value.
+    fn add<T: Into<Value>>(&mut self, name: &str, values: impl Iterator<Item = T>) {
+        let Self { text } = self;
+        let comma = if text.ends_with('{') { "" } else { "," };
+        text.extend([comma, "\"", name, "\":"]);
+        let mut values = values.map(Into::into);
+        let first = values.next().unwrap_or_else(|| Value::Array(Vec::new()));
+        let mut same = 1;
+        let other = values.find(|value| {
+            let is_same = *value == first;
+            same += usize::from(is_same);
+            !is_same
+        });
+        let first = first.to_string();
+        let Some(other) = other else { return text.push_str(&first) };
+        text.push('[');
+        text.extend(std::iter::repeat_n([&*first, ","], same).flatten());
+        text.push_str(&other.to_string());
+        for value in values {
+            // Writing to a text cannot fail.
+            let _ = write!(text, ",{value}");
+        }
+        text.push(']');
+    }
+}
+
 /// Appends the conflicts, a column after the other, and the lists of the words that repeat.
 fn columns(text: &mut String, rows: &[RunConflict], drawn: Vec<Value>, net: Option<&Net>, named: Option<&NamedPlaces>) {
     text.push_str("{\"columns\":{");
-    let mut is_first = true;
-    let mut add = |name: &str, column: Value| {
-        text.push_str(if std::mem::take(&mut is_first) { "" } else { "," });
-        push(text, &format!("\"{name}\":{}", once(column)));
-    };
+    let mut columns = ColumnWriter { text };
     let conflicts = || rows.iter().map(|row| &row.conflict);
     let mut ids = Words::default();
-    add("ego", conflicts().map(|conflict| ids.place(&conflict.ego)).collect());
-    add("foe", conflicts().map(|conflict| ids.place(&conflict.foe)).collect());
+    columns.add("ego", conflicts().map(|conflict| ids.place(&conflict.ego)));
+    columns.add("foe", conflicts().map(|conflict| ids.place(&conflict.foe)));
     let mut types = Words::default();
-    add("ego_type", conflicts().map(|conflict| types.place(&conflict.ego_type)).collect());
-    add("foe_type", conflicts().map(|conflict| types.place(&conflict.foe_type)).collect());
+    columns.add("ego_type", conflicts().map(|conflict| types.place(&conflict.ego_type)));
+    columns.add("foe_type", conflicts().map(|conflict| types.place(&conflict.foe_type)));
     let [mut nearness, mut consequences, mut artefacts] = <[Words; 3]>::default();
-    add("nearness", conflicts().map(|conflict| nearness.place(&conflict.nearness)).collect());
-    add("consequence", conflicts().map(|conflict| consequences.place(&conflict.consequence)).collect());
-    add("artefact", conflicts().map(|conflict| artefacts.place(&conflict.artefact)).collect());
+    columns.add("nearness", conflicts().map(|conflict| nearness.place(&conflict.nearness)));
+    columns.add("consequence", conflicts().map(|conflict| consequences.place(&conflict.consequence)));
+    columns.add("artefact", conflicts().map(|conflict| artefacts.place(&conflict.artefact)));
     let [mut manoeuvres, mut causes] = <[Words; 2]>::default();
-    add("manoeuvre", conflicts().map(|conflict| manoeuvres.place(&conflict.manoeuvre)).collect());
-    add("cause", conflicts().map(|conflict| causes.place(&conflict.cause)).collect());
+    columns.add("manoeuvre", conflicts().map(|conflict| manoeuvres.place(&conflict.manoeuvre)));
+    columns.add("cause", conflicts().map(|conflict| causes.place(&conflict.cause)));
     let [mut lanes, mut areas] = <[Words; 2]>::default();
     let area = |conflict| named.and_then(|named| named.of(conflict)).map_or("", |place| &place.name);
-    add("area", conflicts().map(|conflict| areas.place(area(conflict))).collect());
-    add("lane", conflicts().map(|conflict| lanes.place(&conflict.lane)).collect());
-    add("id", conflicts().map(|conflict| conflict.id).collect());
-    add("run", rows.iter().map(|row| row.run).collect());
-    add("kind", conflicts().map(|conflict| rank(&Kind::ALL, conflict.kind)).collect());
-    add("severity", conflicts().map(|conflict| rank(&Severity::ALL, conflict.severity)).collect());
-    add("collision", conflicts().map(|conflict| u8::from(conflict.collision)).collect());
-    add("unavoidable", conflicts().map(|conflict| u8::from(conflict.unavoidable == Some(true))).collect());
+    columns.add("area", conflicts().map(|conflict| areas.place(area(conflict))));
+    columns.add("lane", conflicts().map(|conflict| lanes.place(&conflict.lane)));
+    columns.add("id", conflicts().map(|conflict| conflict.id));
+    columns.add("run", rows.iter().map(|row| row.run));
+    columns.add("kind", conflicts().map(|conflict| rank(&Kind::ALL, conflict.kind)));
+    columns.add("severity", conflicts().map(|conflict| rank(&Severity::ALL, conflict.severity)));
+    columns.add("collision", conflicts().map(|conflict| u8::from(conflict.collision)));
+    columns.add("unavoidable", conflicts().map(|conflict| u8::from(conflict.unavoidable == Some(true))));
     let touching = conflicts().map(parts).collect::<Vec<_>>();
     for (place, name) in ["ego_part", "foe_part"].into_iter().enumerate() {
-        add(name, touching.iter().map(|parts| parts.map(|parts| parts[place] as u8)).collect());
+        columns.add(name, touching.iter().map(|parts| parts.map(|parts| parts[place] as u8)));
     }
     let mut movements = Movements::of(net);
     let moves = conflicts().map(|conflict| movements.of_both(conflict)).collect::<Vec<_>>();
     for (place, name) in ["ego_movement", "foe_movement"].into_iter().enumerate() {
-        add(name, moves.iter().map(|both| both.map(|both| both.movements[place])).collect());
+        columns.add(name, moves.iter().map(|both| both.map(|both| both.movements[place])));
     }
     let did_not_yield =
         |conflict: &LoggedConflict| conflict.cause.split(' ').any(|cause| cause == Cause::DidNotYield.name());
     let yields = moves.iter().zip(conflicts()).map(|(both, conflict)| both.filter(|_| did_not_yield(conflict))?.yields);
-    add("yields", yields.collect());
+    columns.add("yields", yields);
     let is_there = |column: &&Column| {
         column.presence != Presence::Chosen || conflicts().any(|conflict| (column.get)(conflict) != Cell::Missing)
     };
@@ -195,7 +224,7 @@ fn columns(text: &mut String, rows: &[RunConflict], drawn: Vec<Value>, net: Opti
             Cell::Number(number) => Some(rounded(number, decimals(column))),
             _ => None,
         };
-        add(column.name, conflicts().map(number).collect());
+        columns.add(column.name, conflicts().map(number));
     }
     let mut places = Words::default();
     let spots = lanes.list.iter().map(|lane| spot(lane, net)).collect::<Vec<_>>();
@@ -233,16 +262,6 @@ fn decimals(column: &Column) -> i32 {
 
 fn rank<T: PartialEq>(all: &[T], one: T) -> usize {
     all.iter().position(|known| *known == one).unwrap_or_default()
-}
-
-/// A column with the same value in every row becomes that value.
-fn once(column: Value) -> Value {
-    match column {
-        Value::Array(mut values) if values.windows(2).all(|pair| pair[0] == pair[1]) => {
-            values.pop().unwrap_or_else(|| Value::Array(Vec::new()))
-        }
-        other => other,
-    }
 }
 
 /// The edge or junction of a lane, in words; without a net, guessed from the lane's id.

@@ -8,6 +8,7 @@ pub mod font;
 pub mod formats;
 pub mod input_hash;
 pub mod log;
+pub mod logged_measures;
 pub mod net_faults_csv;
 pub mod overlaps;
 pub mod palette;

@@ -4,8 +4,10 @@
 //! a test compares the table in docs/log.md and the Python stub with it. The columns of measures that only logs of runs have
 //! that ask for them follow from the table of measures, [`closecall::chosen_measures`].
 
+use ecow::EcoString;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
+use super::logged_measures::LoggedMeasures;
 use super::place::{edge_of, junction_of, on_lane};
 use super::value::Field;
 use crate::util::decimal;
@@ -25,7 +27,7 @@ use closecall::util::units::{
 pub use super::value::{ColumnType, Value};
 
 /// A text that may be missing: it is empty then.
-pub(crate) type OptionalText = String;
+pub(crate) type OptionalText = EcoString;
 
 /// What a conflict does not know itself: its number in the log, and the names behind its indices.
 #[derive(Clone, Copy, Debug)]
@@ -66,19 +68,30 @@ macro_rules! columns {
         #[derive(Clone, Debug, PartialEq)]
         pub struct LoggedConflict {
             $( $(#[doc = $meaning])+ pub $name: $type, )+
-            $( $(#[doc = $chosen_meaning])+ pub $chosen: Option<$unit>, )+
+            /// The measures that its run was told to log.
+            pub chosen: LoggedMeasures,
         }
 
         /// The columns of `conflicts.csv`, in their order.
         pub static COLUMNS: [Column; [$(stringify!($name),)+ $(stringify!($chosen)),+].len()] = [
             $( column!($name: $type, $presence, $($meaning)+), )+
-            $( column!($chosen: Option<$unit>, Chosen, $($chosen_meaning)+), )+
+            $( Column {
+                name: stringify!($chosen),
+                meaning: concat!($($chosen_meaning),+),
+                presence: Presence::Chosen,
+                column_type: ColumnType::Number,
+                rust_type: stringify!(Option<$unit>),
+                get: |conflict| conflict.chosen.of(ChosenMeasure::$variant).map_or(Value::Missing, Value::Number),
+                set: |conflict, value| Ok(conflict.chosen.set(ChosenMeasure::$variant, Field::from_value(value)?)),
+            }, )+
         ];
 
         impl LoggedConflict {
             /// The log's row of a conflict.
             pub fn new($conflict: &Conflict, $context: Context) -> Self {
-                Self { $( $name: $value, )+ $( $chosen: $conflict.chosen(ChosenMeasure::$variant), )+ }
+                let mut chosen = LoggedMeasures::default();
+                ChosenMeasure::ALL.into_iter().for_each(|measure| chosen.set(measure, $conflict.chosen(measure)));
+                Self { $( $name: $value, )+ chosen }
             }
 
             /// A conflict from its cells; `cell` gets the place of a column and returns what is there.
@@ -89,7 +102,11 @@ macro_rules! columns {
                 let mut columns = COLUMNS.iter().enumerate();
                 Ok(Self {
                     $( $name: next_field(&mut columns, &cell)?, )+
-                    $( $chosen: next_field(&mut columns, &cell)?, )+
+                    chosen: {
+                        let mut chosen = LoggedMeasures::default();
+                        $( chosen.set(ChosenMeasure::$variant, next_field::<Option<$unit>>(&mut columns, &cell)?); )+
+                        chosen
+                    },
                 })
             }
         }
@@ -100,21 +117,21 @@ closecall::chosen_measures! { columns! |conflict, context|
     /// 1, 2, 3, … in the file's order
     [Required] id: u64 = context.number;
     /// SUMO's id of the ego: the one farther from the conflict point
-    [Required] ego: String = conflict.ego.to_string();
+    [Required] ego: EcoString = conflict.ego.clone();
     /// SUMO's id of the foe
-    [Required] foe: String = conflict.foe.to_string();
+    [Required] foe: EcoString = conflict.foe.clone();
     /// `rear_end`, `frontal`, `side`: by the angle at the conflict point
     [Required] kind: Kind = conflict.kind;
     /// `critical`, `serious`, `caution`: by [a table](numbers.md#severity) of `nearness` and `consequence`; the worst of all
     /// steps
     [Required] severity: Severity = conflict.severity;
     /// how near to a crash it was: `possible`, `likely`, `near_certain`
-    [Optional] nearness: OptionalText = conflict.nearness.name().to_owned();
+    [Optional] nearness: OptionalText = conflict.nearness.name().into();
     /// what a crash would have meant: `minor`, `moderate`, `severe`
-    [Optional] consequence: OptionalText = conflict.consequence.name().to_owned();
+    [Optional] consequence: OptionalText = conflict.consequence.name().into();
     /// why it is not traffic's and not counted: `drawn_overlap`, `appeared`, `stopped_at_once`, `jumped`, `tracking`
     /// ([rules](artefacts.md)); empty for the rest
-    [Optional] artefact: OptionalText = conflict.artefact.map(Artefact::name).unwrap_or_default().to_owned();
+    [Optional] artefact: OptionalText = conflict.artefact.map(Artefact::name).unwrap_or_default().into();
     /// first step that meets the log's condition
     [Required] begin: Second = conflict.begin;
     /// last such step
@@ -154,7 +171,7 @@ closecall::chosen_measures! { columns! |conflict, context|
     /// as `x`
     [Required] y: Metre = conflict.y;
     /// the lane of the conflict point
-    [Required] lane: OptionalText = context.lane(conflict).to_owned();
+    [Required] lane: OptionalText = context.lane(conflict).into();
     /// whether the rectangles overlapped by more than the contact tolerance, also between steps
     [Required] collision: bool = conflict.collision;
     /// whether SUMO reported a collision of the two during the conflict; empty for a recording
@@ -175,7 +192,7 @@ closecall::chosen_measures! { columns! |conflict, context|
     [Snapshot] ego_width: Option<Metre> = Some(conflict.ego_snapshot.width);
     /// where the ego's front bumper would go until it stands, and ε (the reserve) further: `x y x y …`, to the centimetre;
     /// empty if it stands
-    [Snapshot] ego_path: OptionalText = path(&conflict.ego_snapshot);
+    [Snapshot] ego_path: OptionalText = path(&conflict.ego_snapshot).into();
     /// the foe's front bumper; a corner of an obstacle
     [Snapshot] foe_x: Option<Metre> = Some(conflict.foe_snapshot.front.x);
     /// as `foe_x`
@@ -187,7 +204,7 @@ closecall::chosen_measures! { columns! |conflict, context|
     /// width of the foe; 0 for an obstacle
     [Snapshot] foe_width: Option<Metre> = Some(conflict.foe_snapshot.width);
     /// as `ego_path`, of the foe
-    [Snapshot] foe_path: OptionalText = path(&conflict.foe_snapshot);
+    [Snapshot] foe_path: OptionalText = path(&conflict.foe_snapshot).into();
     /// time headway: the room to the foe's rear over the ego's speed; rear-end only
     [Optional] headway: Option<Second> = headway(conflict.kind, conflict.gap, conflict.ego_speed);
     /// maximum overlap, also between steps: the shortest displacement that parts the rectangles; 0 if none
@@ -209,27 +226,27 @@ closecall::chosen_measures! { columns! |conflict, context|
     /// what the two were doing: `following`, `cut_in`, `lane_change`, `side_by_side`, `merge`, `crossing`, `left_turn_across`,
     /// `right_turn_across`, `turn_into`, `overtaking_oncoming`, `head_on`, `person_crossing`, `person_along`,
     /// `person_standing`, `object` ([rules](causes.md)); empty if their lanes are unknown
-    [Optional] manoeuvre: OptionalText = conflict.manoeuvre.map(Manoeuvre::name).unwrap_or_default().to_owned();
+    [Optional] manoeuvre: OptionalText = conflict.manoeuvre.map(Manoeuvre::name).unwrap_or_default().into();
     /// why it came about, strongest evidence first, separated by spaces: `ran_red`, `late_amber`, `did_not_yield`,
     /// `changed_lane`, `overtook`, `outside_crossing`, `stood`, `behind_curve`, `leader_braked`, `too_close`, `too_fast`,
     /// `appeared` ([rules](causes.md)); empty if none is known
-    [Optional] cause: OptionalText = conflict.causes.to_string();
+    [Optional] cause: OptionalText = conflict.causes.to_string().into();
     /// SUMO's lane-change reason: `traci` (a script), `strategic`, `cooperative`, `speed_gain`, `keep_right`, `sublane`; empty
     /// without the cause `changed_lane`, and if unknown, as in a replay
     [Optional] lane_change_reason: OptionalText =
-        conflict.lane_change_reason.map(LaneChangeReason::name).unwrap_or_default().to_owned();
+        conflict.lane_change_reason.map(LaneChangeReason::name).unwrap_or_default().into();
     /// lane of the ego's front bumper; the nearest if its path is unknown
-    [Optional] ego_lane: OptionalText = context.on_lane(conflict, 0).map(|(lane, _)| lane.to_owned()).unwrap_or_default();
+    [Optional] ego_lane: OptionalText = context.on_lane(conflict, 0).map(|(lane, _)| lane.into()).unwrap_or_default();
     /// how far along that lane, in SUMO's metres
     [Optional] ego_lane_position: Option<Metre> = context.on_lane(conflict, 0).map(|(_, position)| position);
     /// lane of the foe's front bumper, or of an obstacle's corner
-    [Optional] foe_lane: OptionalText = context.on_lane(conflict, 1).map(|(lane, _)| lane.to_owned()).unwrap_or_default();
+    [Optional] foe_lane: OptionalText = context.on_lane(conflict, 1).map(|(lane, _)| lane.into()).unwrap_or_default();
     /// how far along that lane
     [Optional] foe_lane_position: Option<Metre> = context.on_lane(conflict, 1).map(|(_, position)| position);
     /// the edge of `lane`
-    [Optional] edge: OptionalText = edge_of(context.lane(conflict)).to_owned();
+    [Optional] edge: OptionalText = edge_of(context.lane(conflict)).into();
     /// the junction that `lane` is within; empty outside junctions
-    [Optional] junction: OptionalText = junction_of(context.lane(conflict)).to_owned();
+    [Optional] junction: OptionalText = junction_of(context.lane(conflict)).into();
     /// longitude of `x` and `y` by the net's projection, as SUMO converts it; empty without one
     [Optional] lon: Option<Degree> = context.degrees(conflict).map(|degrees| degrees[0]);
     /// latitude of `x` and `y`
@@ -358,8 +375,8 @@ impl<'a> Context<'a> {
         self.net?.degrees(Point::new(conflict.x, conflict.y))
     }
 
-    fn type_name(&self, profile: ProfileIndex) -> String {
-        self.roster.profile_at(profile).name.to_string()
+    fn type_name(&self, profile: ProfileIndex) -> EcoString {
+        self.roster.profile_at(profile).name.as_str().into()
     }
 }
 

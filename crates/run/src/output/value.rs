@@ -1,5 +1,7 @@
 //! One value of a log: what a CSV cell, a Parquet column and a field of a conflict have in common.
 
+use ecow::EcoString;
+
 use crate::util::decimal;
 use closecall::detection::kind::{Kind, Severity};
 
@@ -105,7 +107,7 @@ impl Field for u64 {
     }
 }
 
-impl Field for String {
+impl Field for EcoString {
     const TYPE: ColumnType = ColumnType::Text;
 
     fn value(&self) -> Value<'_> {
@@ -114,7 +116,7 @@ impl Field for String {
 
     fn from_value(value: Value) -> Result<Self, String> {
         match value {
-            Value::Text(text) => Ok(text.to_owned()),
+            Value::Text(text) => Ok(text.into()),
             Value::Missing => Ok(Self::new()),
             _ => Err(value.unfit("a text")),
         }

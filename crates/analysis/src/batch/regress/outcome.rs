@@ -93,6 +93,7 @@ impl SeedConflict {
         let cells = cells.collect::<csv::StringRecord>();
         let cell = |column: usize| COLUMNS[column].column_type.parse(cells.get(column + 1).unwrap_or_default());
         let LoggedConflict { ego, foe, kind, severity, begin, end, .. } = LoggedConflict::from_cells(cell).ok()?;
+        let (ego, foe) = (ego.into(), foe.into());
         Some(Self { seed: cells.get(0)?.parse().ok()?, ego, foe, kind, severity, begin, end, cells })
     }
 

@@ -4,15 +4,11 @@ use std::ffi::OsString;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
-use std::time::Duration;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::scenario::Scenario;
+use crate::batch::pool::{ASKED_EVERY, Pool};
 use crate::{Error, Result};
-
-/// The interval at which processes and the user's interrupt are polled.
-const ASKED_EVERY: Duration = Duration::from_millis(5);
 
 /// How scenarios are run.
 pub struct Runner<'a> {
@@ -45,35 +41,9 @@ type JobResult = std::result::Result<(), String>;
 impl Runner<'_> {
     /// Runs all jobs and returns their results, in the order of the jobs.
     pub(in crate::batch) fn run(&mut self, jobs: &[Job]) -> Result<Vec<JobResult>> {
-        let next = AtomicUsize::new(0);
-        let stop = AtomicBool::new(false);
-        let ends = Mutex::new(vec![None; jobs.len()]);
+        let Self { workers, interrupted, progress, .. } = self;
         let closecall = &self.closecall;
-        let work = || {
-            while !stop.load(Ordering::Relaxed) {
-                let number = next.fetch_add(1, Ordering::Relaxed);
-                let Some(job) = jobs.get(number) else { return };
-                let end = one(closecall, job, &stop);
-                ends.lock().unwrap_or_else(PoisonError::into_inner)[number] = Some(end);
-            }
-        };
-        std::thread::scope(|scope| {
-            let workers = (0..self.workers.clamp(1, jobs.len().max(1))).map(|_| scope.spawn(work)).collect::<Vec<_>>();
-            while workers.iter().any(|worker| !worker.is_finished()) {
-                if (self.interrupted)() {
-                    stop.store(true, Ordering::Relaxed);
-                }
-                let done = ends.lock().unwrap_or_else(PoisonError::into_inner).iter().flatten().count();
-                (self.progress)(done as u64, jobs.len() as u64);
-                std::thread::sleep(ASKED_EVERY);
-            }
-        });
-        // Ctrl-C in a terminal also ends the runs, so the last worker may be done before the interrupt is polled.
-        if stop.into_inner() || (self.interrupted)() {
-            return Err(closecall_run::Error::Stopped.into());
-        }
-        let ends = ends.into_inner().unwrap_or_else(PoisonError::into_inner);
-        Ok(ends.into_iter().map(|end| end.unwrap_or_else(|| Err("it never ran".to_owned()))).collect())
+        Pool { workers: *workers, interrupted, progress }.run(jobs, |job, stop| one(closecall, job, stop))
     }
 }
 
