@@ -1,10 +1,10 @@
 //! `closecall report`: logs as one HTML page.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::error::Result;
+use super::error::{Error, Result};
 use super::print::print;
 use super::progress::CountBar;
 use closecall::util::units::counted;
@@ -36,6 +36,10 @@ pub(crate) struct ReportArgs {
     /// Background map: the page requests its tiles from this server. Without it a page sends no requests.
     #[arg(long, value_name = "URL", conflicts_with = "summary")]
     tiles: Option<TileUrl>,
+    /// How many of the worst conflicts play, as far as the log has their clips; each takes 3 to 26 kB of the page [default: 100,
+    /// and at most 2 MB].
+    #[arg(long, value_name = "N", conflicts_with = "summary")]
+    clips: Option<usize>,
     #[command(flatten)]
     filter: ConflictFilter,
 }
@@ -43,10 +47,13 @@ pub(crate) struct ReportArgs {
 /// Writes the page and prints its size.
 pub fn run(arguments: &ReportArgs) -> Result<()> {
     let mut bar = CountBar::new("conflicts", !arguments.quiet);
-    let ReportArgs { folders, against, net, filter, summary, tiles, .. } = arguments;
+    let ReportArgs { folders, against, net, filter, summary, tiles, clips, .. } = arguments;
     let out = arguments.out.clone().unwrap_or_else(|| if *summary { "summary.html" } else { "report.html" }.into());
-    let request =
-        report::Request { folders, against, net: net.as_deref(), filter, is_summary: *summary, tiles: tiles.as_ref() };
+    if out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("pdf")) {
+        return Err(not_pdf(&out));
+    }
+    let (net, tiles) = (net.as_deref(), tiles.as_ref());
+    let request = report::Request { folders, against, net, filter, is_summary: *summary, tiles, clips: *clips };
     let mut progress = |read, all| bar.show(read, all);
     let made = report::write(&request, &out, &mut progress)?;
     drop(bar);
@@ -58,4 +65,14 @@ pub fn run(arguments: &ReportArgs) -> Result<()> {
         set_aside.map_or(Ok(()), |text| print(format_args!("{text}\n")))?;
     }
     Ok(check_none_lost(&lost)?)
+}
+
+/// That a page is HTML, and how it becomes a PDF file: a browser lays it out.
+fn not_pdf(out: &Path) -> Error {
+    let (page, out) = (out.with_extension("html"), out.display());
+    let page = page.display();
+    Error::Value(format!(
+        "--out {out}: a report is HTML; write {page} and print it from a browser, or: chromium --headless \
+         --no-pdf-header-footer --print-to-pdf={out} {page}"
+    ))
 }

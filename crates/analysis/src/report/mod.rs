@@ -128,6 +128,8 @@ pub struct Request<'a> {
     pub is_summary: bool,
     /// The server of the background map; none for a page that sends no requests.
     pub tiles: Option<&'a TileUrl>,
+    /// How many of the worst conflicts play; none for as many as keep the page small.
+    pub clips: Option<usize>,
 }
 
 /// Writes a report to `out`.
@@ -135,7 +137,7 @@ pub struct Request<'a> {
 /// # Errors
 /// Those of reading the logs, of an output that is one of them, and of writing `out`.
 pub fn write(request: &Request, out: &Path, progress: &mut Progress) -> Result<Made> {
-    let Request { folders, against, net, filter, is_summary, tiles } = *request;
+    let Request { folders, against, net, filter, is_summary, tiles, clips } = *request;
     check_keeps_logs(out, &[folders, against].concat(), net)?;
     let conflicts = read(folders, net, filter, progress)?;
     let runs = conflicts.logs.len();
@@ -149,6 +151,7 @@ pub fn write(request: &Request, out: &Path, progress: &mut Progress) -> Result<M
         Some(data::before(&effects, &read(against, net, filter, progress)?))
     };
     let (shown, details) = if is_summary { (SUMMARY, Details::SUMMARY) } else { (REPORT, Details::REPORT) };
+    let details = clips.map_or(details, |clips| details.with_clips(clips));
     let data = data::json(conflicts, before, details, tiles)?;
     let mut file = OutputFile::create(out)?;
     let mut bytes = 0;
