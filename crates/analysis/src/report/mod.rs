@@ -39,6 +39,8 @@ const SCRIPTS: &str = "{{scripts}}";
 struct Page {
     template: &'static str,
     library: Option<&'static str>,
+    /// Whether the screen shows it as it is printed.
+    is_sheet: bool,
     scripts: &'static [&'static str],
 }
 
@@ -46,6 +48,7 @@ struct Page {
 const REPORT: Page = Page {
     template: include_str!("page.html"),
     library: Some(include_str!("vendor/echarts.min.js")),
+    is_sheet: false,
     scripts: &[
         include_str!("script/data.js"),
         include_str!("script/filter.js"),
@@ -80,6 +83,7 @@ const REPORT: Page = Page {
 const SUMMARY: Page = Page {
     template: include_str!("summary.html"),
     library: None,
+    is_sheet: true,
     scripts: &[
         include_str!("script/data.js"),
         include_str!("script/filter.js"),
@@ -167,7 +171,7 @@ pub fn write(request: &Request, out: &Path, progress: &mut Progress) -> Result<M
 /// one.
 fn page(page: &Page, tiles: Option<&TileUrl>, data: &str, mut write: impl FnMut(&str) -> Result<()>) -> Result<()> {
     let scripts = page.scripts.concat();
-    let style = style::sheet();
+    let style = if page.is_sheet { style::sheet().replace("@media print", "@media all") } else { style::sheet() };
     let mut rest = page.template;
     let library = page.library.map(|library| (LIBRARY, library));
     // The policy of the page lets it ask this server only.
