@@ -180,6 +180,7 @@ fn of_log(files: &[(&str, &[u8])]) {
         filter: &filter,
         is_summary: false,
         tiles: None,
+        clips: None,
     };
     let _ = report::write(&report, &folder.path().join("report.html"), &mut |_, _| ());
     let plots = folder.path().join("plots");
