@@ -95,6 +95,8 @@ fn sorted(run: &Run, alarms: impl Iterator<Item = closecall::Alarm>) -> Vec<Alar
 pub struct Listeners {
     on_conflict: Option<Py<PyAny>>,
     on_alarm: Option<Py<PyAny>>,
+    /// How many closed conflicts stay in memory.
+    keep: usize,
     /// The number of the last conflict that `on_conflict` got.
     told: u64,
     /// The pairs whose conflict was open after the last step.
@@ -102,12 +104,13 @@ pub struct Listeners {
 }
 
 impl Listeners {
-    pub fn new(on_conflict: Option<Py<PyAny>>, on_alarm: Option<Py<PyAny>>) -> Self {
-        Self { on_conflict, on_alarm, ..Self::default() }
+    pub fn new(on_conflict: Option<Py<PyAny>>, on_alarm: Option<Py<PyAny>>, keep: usize) -> Self {
+        Self { on_conflict, on_alarm, keep, ..Self::default() }
     }
 
     /// What a step brought, each with the function to call with it: the conflicts that opened, then those that closed.
-    pub fn news(&mut self, py: Python, run: &Run) -> PyResult<Vec<(Py<PyAny>, Py<PyAny>)>> {
+    /// Conflicts that are not to be kept are dropped from the run.
+    pub fn news(&mut self, py: Python, run: &mut Run) -> PyResult<Vec<(Py<PyAny>, Py<PyAny>)>> {
         let mut news = Vec::new();
         if let Some(on_alarm) = &self.on_alarm {
             let pair = |alarm: &closecall::Alarm| [alarm.ego.min(alarm.foe), alarm.ego.max(alarm.foe)];
@@ -125,6 +128,7 @@ impl Listeners {
                 news.push((on_conflict.clone_ref(py), conflict.into_py_any(py)?));
                 self.told = number;
             }
+            run.forget_closed_conflicts(self.keep);
         }
         Ok(news)
     }

@@ -82,7 +82,9 @@ impl Checker {
         };
         let mut run = Run::new(&options, net).map_err(exception)?;
         run.keep_probabilities();
-        run.keep_closed_conflicts(keep.unwrap_or(if out.is_some() { KEPT } else { usize::MAX }));
+        let keep = keep.unwrap_or(if out.is_some() { KEPT } else { usize::MAX });
+        // A listener gets each conflict before it is dropped.
+        run.keep_closed_conflicts(if on_conflict.is_some() { usize::MAX } else { keep });
         let feed = match source {
             Some(source) => {
                 sumo::add_obstacles(source, &mut run, &options.log.obstacles)?;
@@ -115,7 +117,7 @@ impl Checker {
             (Some(source), Some(true)) => Some(Painter::new(source, false, false)?),
             _ => None,
         };
-        let listeners = Listeners::new(on_conflict, on_alarm);
+        let listeners = Listeners::new(on_conflict, on_alarm, keep);
         let state = State { recorded, feed, painter, listeners, is_closed: false, listens: false, has_listened: false };
         Ok(Self { state: Exclusive::new(state), has_simulation: source.is_some() })
     }
@@ -252,7 +254,7 @@ impl Checker {
 impl Checker {
     /// Tells the script what is new; its functions may use the checker.
     fn tell(&self, py: Python) -> PyResult<()> {
-        let news = self.state.with(py, |state| state.listeners.news(py, &state.recorded.run))?;
+        let news = self.state.with(py, |state| state.listeners.news(py, &mut state.recorded.run))?;
         news.into_iter().try_for_each(|(listener, what)| listener.call1(py, (what,)).map(drop))
     }
 }

@@ -181,6 +181,7 @@ fn of_log(files: &[(&str, &[u8])]) {
         is_summary: false,
         tiles: None,
         whatif: None,
+        clips: None,
     };
     let _ = report::write(&report, &folder.path().join("report.html"), &mut |_, _| ());
     let plots = folder.path().join("plots");

@@ -46,6 +46,7 @@ def prepare(folder: Path) -> None:
         shutil.copytree(
             NETS / name, folder / "sumo_nets" / name, ignore=shutil.ignore_patterns("expected", "closecall-out")
         )
+    shutil.copytree(ROOT / "examples", folder / "examples")
     for kind in ("net", "rou"):
         shutil.copy(NETS / f"left_turn/left_turn.{kind}.xml", folder / f"town.{kind}.xml")
     for name in ("town", "before", "after"):

@@ -194,6 +194,14 @@ def test_only_the_latest_conflicts_are_kept_if_so_wanted(tmp_path: Path) -> None
     assert checker.summary["conflicts"][0]["count"] == 5
 
 
+def test_a_listener_gets_conflicts_that_are_not_kept() -> None:
+    found: list[cc.Conflict] = []
+    with cc.Checker(keep=0, artefacts=True, on_conflict=found.append) as checker:
+        for step in range(5):
+            checker.step(step * 10.0, {**PAIR, "id": [f"a{step}", f"b{step}"]})
+    assert [conflict.id for conflict in found] == [1, 2, 3, 4, 5] and checker.conflicts == []
+
+
 FULL = """
 import json, resource, sys, warnings
 import closecall

@@ -5,10 +5,14 @@ from __future__ import annotations
 import gzip
 import json
 import os
+import pty
+import select
 import shutil
 import signal
 import subprocess
+import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Callable
 
@@ -155,6 +159,28 @@ def test_a_run_halts_once_at_each_severe_conflict(scenario: Copy, tmp_path: Path
     halts, most = json.loads(done.stdout.splitlines()[-1])
     # Without a terminal it goes on after a while; the only conflict is no more than a caution.
     assert (halts, most) == (1, 0)
+
+
+@needs_xvfb
+@pytest.mark.usefixtures("display")
+def test_a_halt_lasts_until_enter_is_pressed(scenario: Copy, tmp_path: Path) -> None:
+    words = ["--gui", "--pause-at", "critical", "--quit-on-end", "--end", "8", "--out", str(tmp_path / "log")]
+    command = [sys.executable, "-m", "closecall", "run", str(scenario("unregulated")), *words]
+    terminal, own = pty.openpty()
+    with subprocess.Popen(command, stdin=own, stdout=own, stderr=own, start_new_session=True) as process:
+        os.close(own)
+        said, has_asked = b"", False
+        with suppress(OSError):  # the terminal is gone with the process
+            while some := os.read(terminal, 65536):
+                said += some
+                if said.endswith(b"Enter goes on: ") and not has_asked:
+                    has_asked = True
+                    assert not select.select([terminal], [], [], 2.0)[0], "it does not wait"
+                    os.write(terminal, b"\n")
+    os.close(terminal)
+    assert has_asked and b"\n5.5 s: a critical side conflict of northward (ego)" in said, said
+    assert process.returncode == 0 or b"sumo-gui does not close" in said
+    assert len(rows(tmp_path / "log/conflicts.csv")) == 1
 
 
 def test_a_missing_display_is_reported(scenario: Copy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -210,6 +210,7 @@ def test_unusable_input_gets_one_clear_line(tmp_path: Path) -> None:
     for words, message in (
         ((tmp_path / "gone",), "gone: No such file"),
         ((tmp_path / "empty",), "no log in it: neither conflicts.csv"),
+        ((log / "conflicts.csv",), "it is a file; name the folder of a log"),
         ((bad,), "line 2: gap: "),
         ((cut,), 'line 1: the column "mu" is missing'),
         ((broken,), "run.json: it is not JSON"),
@@ -401,6 +402,23 @@ def test_an_address_opens_its_conflict(browser: Any, town: Path) -> None:
     assert opened.page.locator("#opened .player").count() == 1
 
 
+def test_a_conflict_that_does_not_play_says_why_and_what_does(browser: Any, town: Path, tmp_path: Path) -> None:
+    log = town / "log"
+    assert closecall("report", log, "-o", tmp_path / "r.html", "--clips", "1").returncode == 0
+    opened = Opened(browser, tmp_path / "r.html", view=ALL)
+    assert opened.page.evaluate("data.clips.length") == 1
+    for rank, why in ((0, "Play it in sumo-gui: "), (1, "Only the worst 1 play on this page. ")):
+        row = opened.page.evaluate(f"worstRows(shownRows(), 2)[{rank}]")
+        opened.page.evaluate(f"opened.open({row})")
+        assert why in str(opened.page.text_content("#opened"))
+    command = str(opened.page.locator("#opened code").text_content()).split()
+    assert command[:2] == ["closecall", "clip"]
+    assert closecall(*command[1:], "-o", tmp_path / "clip.svg").returncode == 0
+    opened.page.evaluate("opened.open(shownRows().find((row) => column.severity[row] === 0 && isTraffic(row)))")
+    assert "kept no clip of it. Run it again with --log-clips caution" in str(opened.page.text_content("#opened"))
+    assert opened.complaints == []
+
+
 def test_tables_fit_a_screen_of_1400_pixels(browser: Any, named_town: Path) -> None:
     opened = Opened(browser, named_town / "report.html", view=ALL)
     opened.page.set_viewport_size({"width": 1400, "height": 900})
@@ -434,19 +452,6 @@ def named_town(town: Path, once: Once) -> Path:
         assert closecall("report", town / "log", *words).returncode == 0
 
     return once("named_town", fill)
-
-
-def test_a_summary_is_one_page_without_greek_letters(browser: Any, town: Path, tmp_path: Path) -> None:
-    assert closecall("report", town / "log", "--summary", "-o", tmp_path / "s.html").returncode == 0
-    opened = Opened(browser, tmp_path / "s.html")
-    text = opened.text("body")
-    assert not re.search("[\u0370-\u03ff]", text)
-    report = Opened(browser, town / "report.html")
-    assert opened.text("#verdict") == report.text("#verdict"), "the same sentences"
-    assert opened.colours("figure") > 5
-    assert len(re.findall(rb"/Type\s*/Page\b", opened.page.pdf(format="A4"))) == 1
-    assert (opened.complaints, opened.requests) == ([], [(tmp_path / "s.html").as_uri()])
-    assert (tmp_path / "s.html").stat().st_size < 1_000_000
 
 
 def test_a_background_map_is_asked_for_only_if_wanted(browser: Any, town: Path, tmp_path: Path) -> None:

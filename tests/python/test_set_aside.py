@@ -1,4 +1,4 @@
-"""What is not traffic stays in the log, is not counted anywhere, and a line reports it; `--artefacts` counts it in."""
+"""What is not traffic stays in the log, is not counted anywhere, and a line reports it; `--artefacts` includes it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from report_page import ALL, Opened, made_up
 
 ARTEFACTS = ["drawn_overlap", "", "jumped", "", "drawn_overlap", ""]
 WHY = "set aside 3 that are not traffic's: 2 drawn_overlap, 1 jumped"
-COUNTS = "(--artefacts counts them in)"
+COUNTS = "(--artefacts includes them)"
 
 
 @pytest.fixture

@@ -156,9 +156,12 @@ class Painter:
         if sys.stdin is None or not sys.stdin.isatty():
             time.sleep(HALTS)
             return
-        kind, now = worst.kind.replace("_", "-"), self.sumo.simulation.getTime()
+        # As in the window and the log: the time of the step, not of the next one.
+        now = self.sumo.simulation.getTime() - self.sumo.simulation.getDeltaT()
+        kind = worst.kind.replace("_", "-")
         pair = f"{worst.ego.id} (ego) and {worst.foe.id} (foe)"
-        input(f"{now:g} s: a {worst.severity} {kind} conflict of {pair}; Enter goes on: ")
+        # The progress bar has not ended its line.
+        input(f"\n{now:g} s: a {worst.severity} {kind} conflict of {pair}; Enter goes on: ")
 
     def _show(self, place: Point) -> None:
         """Look at a place, and wait until sumo-gui does."""

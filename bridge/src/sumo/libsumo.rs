@@ -54,7 +54,7 @@ const PARKS: [bool; 2] = [true, false];
 
 impl Libsumo {
     pub fn new(module: &Bound<PyAny>, options: &Options) -> PyResult<Self> {
-        let compiled = module.getattr("_libsumo")?;
+        let compiled = module.py().import("libsumo")?.getattr("_libsumo")?;
         let function = |name: &str| compiled.getattr(name).map(Bound::unbind);
         Ok(Self {
             time: function("simulation_getTime")?,

@@ -124,7 +124,7 @@ impl Source {
     }
 }
 
-/// Whether a source is the module libsumo.
+/// Whether a source is libsumo: the module itself, or traci where `LIBSUMO_AS_TRACI` fills it with libsumo's functions.
 pub fn is_libsumo(source: &Bound<PyAny>) -> bool {
-    source.getattr("__name__").is_ok_and(|name| name.to_string() == "libsumo")
+    source.call_method0("isLibsumo").is_ok_and(|is| is.is_truthy().unwrap_or(false))
 }

@@ -1,10 +1,10 @@
 //! `closecall report`: logs as one HTML page.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::error::Result;
+use super::error::{Error, Result};
 use super::print::print;
 use super::progress::CountBar;
 use closecall::util::units::counted;
@@ -39,6 +39,10 @@ pub(crate) struct ReportArgs {
     /// Folder that `closecall whatif` wrote: its roll-outs as sections of the page.
     #[arg(long, value_name = "DIR", conflicts_with = "summary")]
     whatif: Option<PathBuf>,
+    /// How many of the worst conflicts play, as far as the log has their clips; each takes 3 to 26 kB of the page [default: 100,
+    /// and at most 2 MB].
+    #[arg(long, value_name = "N", conflicts_with = "summary")]
+    clips: Option<usize>,
     #[command(flatten)]
     filter: ConflictFilter,
 }
@@ -46,15 +50,20 @@ pub(crate) struct ReportArgs {
 /// Writes the page and prints its size.
 pub fn run(arguments: &ReportArgs) -> Result<()> {
     let mut bar = CountBar::new("conflicts", !arguments.quiet);
-    let ReportArgs { folders, against, net, filter, summary, tiles, whatif, .. } = arguments;
+    let ReportArgs { folders, against, net, filter, summary, tiles, clips, whatif, .. } = arguments;
     let out = arguments.out.clone().unwrap_or_else(|| if *summary { "summary.html" } else { "report.html" }.into());
+    if out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("pdf")) {
+        return Err(not_pdf(&out));
+    }
+    let (net, tiles) = (net.as_deref(), tiles.as_ref());
     let request = report::Request {
         folders,
         against,
-        net: net.as_deref(),
+        net,
         filter,
         is_summary: *summary,
-        tiles: tiles.as_ref(),
+        tiles,
+        clips: *clips,
         whatif: whatif.as_deref(),
     };
     let mut progress = |read, all| bar.show(read, all);
@@ -68,4 +77,14 @@ pub fn run(arguments: &ReportArgs) -> Result<()> {
         set_aside.map_or(Ok(()), |text| print(format_args!("{text}\n")))?;
     }
     Ok(check_none_lost(&lost)?)
+}
+
+/// That a page is HTML, and how it becomes a PDF file: a browser lays it out.
+fn not_pdf(out: &Path) -> Error {
+    let (page, out) = (out.with_extension("html"), out.display());
+    let page = page.display();
+    Error::Value(format!(
+        "--out {out}: a report is HTML; write {page} and print it from a browser, or: chromium --headless \
+         --no-pdf-header-footer --print-to-pdf={out} {page}"
+    ))
 }

@@ -58,7 +58,7 @@ fn time(text: &str) -> std::result::Result<Second, String> {
 
 /// How many conflicts are not counted, why, and what counts them; none where all are.
 pub(crate) fn set_aside_in_words(set_aside: &SetAside) -> Option<String> {
-    in_words(set_aside).map(|words| format!("{words} (--artefacts counts them in)"))
+    in_words(set_aside).map(|words| format!("{words} (--artefacts includes them)"))
 }
 
 /// Whether one of these matches, or none is set.

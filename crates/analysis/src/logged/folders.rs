@@ -23,6 +23,9 @@ pub const SUMMARY: &str = "summary.json";
 pub fn log_folders(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
     let mut known = Vec::new();
     for folder in named {
+        if folder.is_file() {
+            return Err(Error::content(folder, "it is a file; name the folder of a log, such as closecall-out"));
+        }
         let mut found = logs_below(folder)?;
         if found.is_empty() {
             return Err(Error::content(

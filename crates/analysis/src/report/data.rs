@@ -35,6 +35,12 @@ pub(super) struct Details {
 impl Details {
     /// Those of the report.
     pub const REPORT: Self = Self { drawn: 2_000, played: 100, clip_bytes: 2_000_000 };
+
+    /// Those of a report with as many clips as were asked for, however long the page becomes.
+    pub const fn with_clips(self, played: usize) -> Self {
+        Self { played, clip_bytes: usize::MAX, ..self }
+    }
+
     /// Those of the summary: the worst one's clip, which says when the two touched.
     pub const SUMMARY: Self = Self { drawn: 0, played: 1, clip_bytes: 2_000_000 };
 }

@@ -41,6 +41,8 @@ const SCRIPTS: &str = "{{scripts}}";
 struct Page {
     template: &'static str,
     library: Option<&'static str>,
+    /// Whether the screen shows it as it is printed.
+    is_sheet: bool,
     scripts: &'static [&'static str],
 }
 
@@ -48,6 +50,7 @@ struct Page {
 const REPORT: Page = Page {
     template: include_str!("page.html"),
     library: Some(include_str!("vendor/echarts.min.js")),
+    is_sheet: false,
     scripts: &[
         include_str!("script/data.js"),
         include_str!("script/filter.js"),
@@ -82,6 +85,7 @@ const REPORT: Page = Page {
 const SUMMARY: Page = Page {
     template: include_str!("summary.html"),
     library: None,
+    is_sheet: true,
     scripts: &[
         include_str!("script/data.js"),
         include_str!("script/filter.js"),
@@ -132,6 +136,8 @@ pub struct Request<'a> {
     pub tiles: Option<&'a TileUrl>,
     /// The folder of roll-outs to show; none for none.
     pub whatif: Option<&'a Path>,
+    /// How many of the worst conflicts play; none for as many as keep the page small.
+    pub clips: Option<usize>,
 }
 
 /// Writes a report to `out`.
@@ -139,7 +145,7 @@ pub struct Request<'a> {
 /// # Errors
 /// Those of reading the logs, of an output that is one of them, and of writing `out`.
 pub fn write(request: &Request, out: &Path, progress: &mut Progress) -> Result<Made> {
-    let Request { folders, against, net, filter, is_summary, tiles, whatif } = *request;
+    let Request { folders, against, net, filter, is_summary, tiles, clips, whatif } = *request;
     check_keeps_logs(out, &[folders, against].concat(), net)?;
     let conflicts = read(folders, net, filter, progress)?;
     let runs = conflicts.logs.len();
@@ -153,6 +159,7 @@ pub fn write(request: &Request, out: &Path, progress: &mut Progress) -> Result<M
         Some(data::before(&effects, &read(against, net, filter, progress)?))
     };
     let (shown, details) = if is_summary { (SUMMARY, Details::SUMMARY) } else { (REPORT, Details::REPORT) };
+    let details = clips.map_or(details, |clips| details.with_clips(clips));
     let data = data::json(conflicts, before, details, tiles)?;
     let whatif = whatif.map_or_else(|| Ok(String::new()), sections)?;
     let mut file = OutputFile::create(out)?;
@@ -175,7 +182,7 @@ fn page(
     mut write: impl FnMut(&str) -> Result<()>,
 ) -> Result<()> {
     let scripts = page.scripts.concat();
-    let style = style::sheet();
+    let style = if page.is_sheet { style::sheet().replace("@media print", "@media all") } else { style::sheet() };
     let mut rest = page.template;
     let library = page.library.map(|library| (LIBRARY, library));
     // The policy of the page lets it ask this server only.

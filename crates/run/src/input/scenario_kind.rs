@@ -57,7 +57,7 @@ impl SumoFile {
             (Self::Recording, _) => format!("closecall replay {file} --net NET"),
             (_, [only]) => format!("closecall run {}, which names it", only.display()),
             (_, [first, others @ ..]) => {
-                format!("closecall run {}; {} more .sumocfg beside it name it", first.display(), others.len())
+                format!("closecall run {}, one of {} .sumocfg that name it", first.display(), others.len() + 1)
             }
             (_, []) => "closecall run takes the .sumocfg that names it; sumo -n NET -r ROUTES --save-configuration \
                         NEW.sumocfg writes one"

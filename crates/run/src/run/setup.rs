@@ -52,6 +52,11 @@ impl Run {
         self.most_conflicts = most;
     }
 
+    /// Forgets the closed conflicts but for the latest.
+    pub fn forget_closed_conflicts(&mut self, all_but: usize) {
+        self.conflicts.drain(..self.conflicts.len().saturating_sub(all_but));
+    }
+
     /// Why the log and the other files are no longer written, if that is so.
     pub fn log_error(&self) -> Option<&str> {
         self.writing.error.as_deref()

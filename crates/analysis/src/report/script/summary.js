@@ -2,6 +2,9 @@
 
 /** The most lines of each list: more than a page holds would push the rest off it. */
 const MOST_LINES = { manoeuvres: 4, remarks: 5 };
+/** The height of A4 within its margins of 12 mm, less what printers round, in the screen's pixels; and how small it may become. */
+const SHEET = 1020;
+const LEAST_FIT = 0.5;
 /** Room around what the map shows, as a part of it. */
 const MARGIN = 1.08;
 /** The dots of a sheet of paper for each of the screen's. */
@@ -82,6 +85,15 @@ function shortenRemarks() {
   byId("further").textContent = more > 0 ? `${more === 1 ? "One more remark is" : `${more} more remarks are`} in the report.` : "";
 }
 
+/** Shrinks the page until it fits on its sheet. */
+function fitSheet() {
+  const page = document.documentElement;
+  for (let fit = 1; page.getBoundingClientRect().height > SHEET && fit > LEAST_FIT; ) {
+    fit -= 0.02;
+    document.body.style.setProperty("--fit", fit.toFixed(2));
+  }
+}
+
 function startSummary() {
   showHeader(false);
   showRemarks();
@@ -100,6 +112,7 @@ function startSummary() {
   byId("example").hidden = worst_row === undefined;
   if (worst_row !== undefined) byId("worstone").textContent = storyOf(worst_row);
   showKey();
+  fitSheet();
   drawPicture(rows, numbered(rows));
 }
 

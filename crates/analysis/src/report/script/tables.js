@@ -53,6 +53,7 @@ class Card {
       this.parts = [this.player.element, this.text];
       return;
     }
+    figures.append(make("p", { className: "screen" }, ...whyNoClip(row)));
     if (drawn.has(row)) {
       this.picture = make("div", { className: "chart" });
       this.picture.setAttribute("role", "img");
@@ -71,6 +72,19 @@ class Card {
     this.player?.dispose();
     this.chart?.dispose();
   }
+}
+
+/** Why a conflict does not play, and the command that makes it. */
+function whyNoClip(row) {
+  const { folder, options: settings = {} } = data.runs[column.run[row]];
+  const level = settings.log_clips || "critical";
+  const isSetAside = !isTraffic(row) && !settings.artefacts;
+  if (SEVERITIES.includes(level) && SEVERITIES.indexOf(level) <= column.severity[row] && !isSetAside) {
+    const words = ["closecall", "clip", folder, String(column.id[row])];
+    return [`Only the worst ${data.clips.length} play on this page. Its clip: `, make("code", { textContent: words.map(quoted).join(" ") })];
+  }
+  const wanted = `--log-clips ${SEVERITIES[column.severity[row]]}${isSetAside ? " --artefacts" : ""}`;
+  return ["Its run kept no clip of it. Run it again with ", make("code", { textContent: wanted })];
 }
 
 /** A road user's drawing: rectangle, path, and a nose that shows its heading. */
