@@ -265,6 +265,11 @@ impl LoggedConflict {
         junction_of(&self.lane)
     }
 
+    /// Whether it is between the two of these ids, whichever is the ego.
+    pub fn is_between(&self, a: &str, b: &str) -> bool {
+        [(a, b), (b, a)].contains(&(&*self.ego, &*self.foe))
+    }
+
     /// ΔV of the one whose speed changes most in a collision; the ego's where the log does not have the foe's.
     pub fn delta_v(&self) -> MetrePerSecond {
         self.foe_delta_v.map_or(self.ego_delta_v, |foe| foe.max(self.ego_delta_v))

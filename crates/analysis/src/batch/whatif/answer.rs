@@ -78,10 +78,10 @@ impl Answer {
     pub(super) fn refused(of: &LoggedConflict, why: &str) -> Self {
         Self {
             conflict: of.id,
-            ego: of.ego.clone(),
-            foe: of.foe.clone(),
+            ego: of.ego.to_string(),
+            foe: of.foe.to_string(),
             kind: of.kind.name().to_owned(),
-            manoeuvre: of.manoeuvre.clone(),
+            manoeuvre: of.manoeuvre.to_string(),
             severity: of.severity.name().to_owned(),
             begin: of.begin,
             x: of.x,
@@ -120,7 +120,7 @@ impl Answer {
     ) -> Result<Self> {
         let contact = |run: &RolledOut| run.outcome.contact.clone();
         let struck = rolled.iter().filter_map(|run| Some((run, contact(run)?))).collect::<Vec<_>>();
-        let is_of_the_two = |contact: &Contact| contact.pair.iter().all(|id| [&of.ego, &of.foe].contains(&id));
+        let is_of_the_two = |contact: &Contact| of.is_between(&contact.pair[0], &contact.pair[1]);
         let mut delta_v = Vec::new();
         let mut injury = 0.0;
         for (run, contact) in &struck {
@@ -177,8 +177,7 @@ fn collision(run: &RolledOut, contact: &Contact) -> Result<Option<LoggedConflict
     let [a, b] = &contact.pair;
     for found in ConflictReader::open(&run.task.log())? {
         let found = found?;
-        let is_pair = (&found.ego, &found.foe) == (a, b) || (&found.ego, &found.foe) == (b, a);
-        if is_pair && found.collision {
+        if found.is_between(a, b) && found.collision {
             return Ok(Some(found));
         }
     }

@@ -104,10 +104,9 @@ fn clip(log: &Path, answer: &Answer) -> Result<Option<String>> {
     if !log.is_dir() {
         return Ok(None);
     }
-    let (ego, foe) = (&answer.ego, &answer.foe);
     for found in ConflictReader::open(log)? {
         let found = found?;
-        if [(ego, foe), (foe, ego)].contains(&(&found.ego, &found.foe)) {
+        if found.is_between(&answer.ego, &answer.foe) {
             let playback = Playback::find(log, ConflictSelector::Id(found.id), None);
             return Ok(playback.ok().map(|playback| svg(&playback)));
         }

@@ -65,7 +65,7 @@ fn baseline(
     };
     let [of_run, own] = [original, task].map(|task| Outcome::read(&task.beside().join(ROLL_OUT)));
     let (of_run, own) = (of_run?, own?);
-    let drift = [&there.ego, &there.foe].into_iter().map(|id| distance(of_run.paths.get(id), own.paths.get(id)));
+    let drift = [&there.ego, &there.foe].into_iter().map(|id| distance(of_run.paths.get(&**id), own.paths.get(&**id)));
     let drift = drift.fold(0.0, f64::max);
     let Some(found) = find(&task.log(), wanted, SAME_CONFLICT)? else {
         let why = format!("it does not happen in runs from SUMO's saved states, which drift by {drift:.1} m");
@@ -91,8 +91,7 @@ fn find(log: &Path, wanted: &LoggedConflict, within: Second) -> Result<Option<Lo
     let mut nearest = None::<LoggedConflict>;
     for found in ConflictReader::open(log)? {
         let found = found?;
-        let is_pair = (&found.ego, &found.foe) == (&wanted.ego, &wanted.foe)
-            || (&found.ego, &found.foe) == (&wanted.foe, &wanted.ego);
+        let is_pair = found.is_between(&wanted.ego, &wanted.foe);
         if is_pair && off(&found) < within && nearest.as_ref().is_none_or(|nearest| off(&found) < off(nearest)) {
             nearest = Some(found);
         }

@@ -214,13 +214,13 @@ impl WhatIf {
         let drawn = self.asked.draw(subject.conflict.id, number);
         let LoggedConflict { ego, foe, .. } = &subject.conflict;
         let baseline = self.baseline(subject);
-        let is_person = |id: &String| baseline.is_some_and(|baseline| baseline.persons.contains(id));
+        let is_person = |id: &str| baseline.is_some_and(|baseline| baseline.persons.iter().any(|person| person == id));
         let is_foe = if drawn.is_foe { !is_person(foe) } else { is_person(ego) };
         let (id, other) = if is_foe { (foe, ego) } else { (ego, foe) };
         let from = baseline.filter(|_| self.asked.from == Onset::Worst).and_then(|baseline| baseline.worst);
         ErringDriver {
-            id: id.clone(),
-            foe: other.clone(),
+            id: id.to_string(),
+            foe: other.to_string(),
             error: self.asked.error,
             from,
             response: drawn.response,
@@ -286,7 +286,7 @@ fn watched(subject: &Subject) -> Watched {
     let LoggedConflict { ego, foe, .. } = &subject.conflict;
     let from = subject.periods.iter().map(|period| period.from).fold(f64::INFINITY, f64::min);
     let until = subject.periods.iter().map(|period| period.end).fold(0.0, f64::max);
-    Watched { pair: [ego.clone(), foe.clone()], from, until }
+    Watched { pair: [ego.to_string(), foe.to_string()], from, until }
 }
 
 fn joined(parts: impl Iterator<Item = String>) -> String {
