@@ -3,6 +3,7 @@
 
 use super::Detector;
 use super::chances::CHANCES;
+use super::last_speed::LastSpeed;
 use super::reach::User;
 use crate::detection::chosen_values::{PairInStep, UserInStep, need_courses};
 use crate::detection::encounter::{Encounter, Nearness};
@@ -12,8 +13,8 @@ use crate::detection::measures::ttc::SteadyMotion;
 use crate::geometry::rectangle::Rectangle;
 use crate::options::measures::{ChosenMeasure, ChosenValues, Measures};
 use crate::traffic::frame::Frame;
-use crate::traffic::roster::Roster;
-use crate::util::units::{Probability, Second};
+use crate::traffic::roster::{Roster, UserIndex};
+use crate::util::units::{MetrePerSecondSquared, Probability, Second};
 
 impl Detector {
     /// The measures that are computed besides those that every run has.
@@ -25,6 +26,11 @@ impl Detector {
     pub fn chosen(&self, frame: &Frame, roster: &Roster, found: &Encounter) -> Option<Box<ChosenValues>> {
         let measures = self.options.measures;
         (!measures.is_empty()).then(|| Box::new(self.values(frame, roster, found, measures)))
+    }
+
+    /// How a road user brakes, 0 or more: the mean over some steps, as measures take it.
+    pub fn deceleration(&self, user: UserIndex) -> MetrePerSecondSquared {
+        self.speeds.get(user).map_or(0.0, LastSpeed::deceleration)
     }
 
     /// The time advantage of a pair in this step.

@@ -12,6 +12,7 @@ use closecall::geometry::Point;
 use closecall::traffic::net::Net;
 use closecall::traffic::roster::{Roster, UserIndex};
 use closecall::util::remark::{Remark, RemarkCode};
+use closecall::util::units::MetrePerSecondSquared;
 
 impl Run {
     /// Works out the crash probability of each step of a conflict, because alarms are asked for it.
@@ -28,6 +29,11 @@ impl Run {
     pub fn path(&self, user: UserIndex) -> Vec<Point> {
         let row = self.frame.row_of(user);
         row.map_or_else(Vec::new, |row| self.detector.path(&self.frame, &self.roster, row))
+    }
+
+    /// How a road user brakes, 0 or more.
+    pub fn deceleration(&self, user: UserIndex) -> MetrePerSecondSquared {
+        self.detector.deceleration(user)
     }
 
     /// The faults of the net so far, the worst first, and the number of road users that overlap only as drawn.

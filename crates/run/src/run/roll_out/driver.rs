@@ -33,8 +33,6 @@ const NO_RED_LIGHT: i32 = 7;
 pub(super) struct Steered {
     asked: ErringDriver,
     phase: Phase,
-    /// Time and speed of its last step.
-    last: Option<(Second, MetrePerSecond)>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +49,7 @@ enum Phase {
 
 impl Steered {
     pub fn new(asked: ErringDriver) -> Self {
-        Self { asked, phase: Phase::Absent, last: None }
+        Self { asked, phase: Phase::Absent }
     }
 
     /// The driver's id.
@@ -78,7 +76,7 @@ impl Steered {
         let has_to_respond = self.asked.from.map_or(is_open, |from| time > from - SAME_MOMENT);
         if self.phase == Phase::Before && has_to_respond {
             let profile = run.roster.profile_of(user);
-            let slowed = self.last.map_or(0.0, |(then, speed)| (speed - state.speed) / (time - then));
+            let slowed = run.deceleration(user);
             let course = Course {
                 speed: state.speed,
                 present: if slowed >= BRAKES { slowed } else { 0.0 },
@@ -101,7 +99,6 @@ impl Steered {
                 commands.push(Command::Speed(if is_ballistic { course.speed } else { distance / step }));
             }
         }
-        self.last = Some((time, state.speed));
         commands
     }
 
