@@ -28,7 +28,7 @@ CONFIGURATION = """<configuration><net-file value="a.net.xml"/><route-files valu
 
 @pytest.fixture(scope="module")
 def follower(once: Once) -> Path:
-    """A folder with the log of a car that comes up behind one that stands, and its roll-outs."""
+    """A folder with the log of a car that approaches a standing car, and its roll-outs."""
 
     def fill(folder: Path) -> None:
         for name, text in (("nod", NODES), ("edg", EDGES), ("rou", ROUTES)):

@@ -31,7 +31,7 @@ pub(crate) struct WhatIfArgs {
     /// The conflicts' ids in the log.
     #[arg(value_name = "ID")]
     ids: Vec<u64>,
-    /// The worst conflicts instead: so many.
+    /// Take the N worst conflicts instead.
     #[arg(long, value_name = "N", conflicts_with = "ids", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
     worst: u16,
     /// Roll-outs of each conflict.
@@ -89,7 +89,7 @@ pub fn run(arguments: &WhatIfArgs, known: &[String], sumo: Option<Sumo>) -> Resu
     let mut conflicts = Vec::with_capacity(which.len());
     for selector in which {
         match selector.find(log) {
-            // A log with fewer conflicts than the default is no error.
+            // A log may have fewer conflicts than the default.
             Err(closecall_analysis::Error::NoWorst(..)) if !conflicts.is_empty() => break,
             found => conflicts.push(found?),
         }

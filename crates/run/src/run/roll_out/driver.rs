@@ -1,4 +1,4 @@
-//! One driver that errs: what SUMO is told about its vehicle in each step.
+//! One driver that errs: the commands for its vehicle in each step.
 
 use super::super::Run;
 use super::course::Course;
@@ -9,7 +9,7 @@ use closecall::traffic::frame::Row;
 use closecall::traffic::roster::UserIndex;
 use closecall::util::units::{MetrePerSecond, SAME_MOMENT, Second};
 
-/// What SUMO is told about a vehicle: a function of TraCI's domain `vehicle` with its value.
+/// A command for a vehicle: a function of TraCI's domain `vehicle` with its value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
     /// `setSpeedMode`: which checks of its own SUMO makes.
@@ -57,7 +57,7 @@ impl Steered {
         &self.asked.id
     }
 
-    /// What SUMO is told after a step; notes in `drawn` when it erred and how.
+    /// The commands after a step; notes in `drawn` when the driver erred and how.
     pub fn step(&mut self, run: &Run, step: Second, is_ballistic: bool, drawn: &mut DrawnError) -> Vec<Command> {
         let mut commands = Vec::new();
         let Some(Row { user, state }) = run.frame.rows().find(|row| *run.roster.id(row.user) == self.asked.id) else {

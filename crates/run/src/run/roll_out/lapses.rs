@@ -8,7 +8,7 @@ use super::plan::{DriverError, ErringDriver, Lapses};
 use closecall::traffic::profile::Category;
 use closecall::traffic::roster::UserIndex;
 
-/// Draws who lapses in the conflicts that open.
+/// Draws the drivers that lapse in the conflicts that open.
 #[derive(Debug)]
 pub(super) struct Lapsing {
     share: f64,

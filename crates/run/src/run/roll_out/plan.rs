@@ -64,9 +64,9 @@ pub enum DriverError {
     /// It responds late: from the moment the conflict opens, it goes on as it was for its response time.
     #[default]
     Late,
-    /// It also misjudges the gap: until then it gives way to no one at junctions.
+    /// It also misjudges the gap: until then it does not give way at junctions.
     Gap,
-    /// It also does not see the signal: until then it stops for none.
+    /// It also does not see the signal: until then it does not stop for one.
     Signal,
 }
 
