@@ -2,8 +2,8 @@
 
 python tests/calibration/calibrate.py FOLDER SCENARIO… [--conflicts N] [--rollouts N]
 
-Each scenario is run, conflicts are drawn evenly over the range of their crash probabilities, and rolled out from the moment
-at which the probability is highest. What was done already is not done again.
+Each scenario is run, conflicts are drawn evenly over the range of their crash probabilities, and rolled out from the
+moment at which the probability is highest. What was done already is not done again.
 """
 
 from __future__ import annotations
@@ -73,7 +73,9 @@ def brier(pairs: list[Rolled]) -> tuple[float, float, float, float]:
     """The Brier score of single roll-outs and its reliability, resolution and uncertainty (Murphy 1973)."""
     count = sum(one.all for one in pairs)
     base = sum(one.contacts for one in pairs) / count
-    score = sum(one.contacts * (1 - one.formula) ** 2 + (one.all - one.contacts) * one.formula**2 for one in pairs) / count
+    score = (
+        sum(one.contacts * (1 - one.formula) ** 2 + (one.all - one.contacts) * one.formula**2 for one in pairs) / count
+    )
     reliability = resolution = 0.0
     for of_bin in binned(pairs).values():
         weight = sum(one.all for one in of_bin)
@@ -119,9 +121,7 @@ def main() -> None:
     parser.add_argument("--conflicts", type=int, default=24)
     parser.add_argument("--rollouts", type=int, default=20)
     asked = parser.parse_args()
-    by_net = {
-        path.stem: list(rolled(path, asked.folder, asked.conflicts, asked.rollouts)) for path in asked.scenarios
-    }
+    by_net = {path.stem: list(rolled(path, asked.folder, asked.conflicts, asked.rollouts)) for path in asked.scenarios}
     pairs = [one for of_net in by_net.values() for one in of_net]
     print("| crash probability | conflicts | formula | roll-outs |\n|---|---|---|---|")
     for number, of_bin in binned(pairs).items():
@@ -137,7 +137,8 @@ def main() -> None:
         if of_net:
             print(line(name, of_net))
     score, reliability, resolution, uncertainty = brier(pairs)
-    print(f"\nBrier {score:.3f} = reliability {reliability:.3f} − resolution {resolution:.3f} + uncertainty {uncertainty:.3f}")
+    parts = f"reliability {reliability:.3f} − resolution {resolution:.3f} + uncertainty {uncertainty:.3f}"
+    print(f"\nBrier {score:.3f} = {parts}")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The crash rate of a scenario in which drivers now and then respond late, by plain simulation: what `closecall rare` estimates.
+"""The crash rate of a scenario with drivers that respond late now and then, by plain simulation: for `closecall rare`.
 
 python tests/calibration/plain.py FOLDER SCENARIO --share Q --seeds N [--workers N] [-- SUMO OPTIONS]
 """
@@ -45,7 +45,18 @@ def main() -> None:
     def run(seed: int) -> tuple[int, float]:
         out = asked.folder / f"seed-{seed}"
         lapses = json.dumps({"lapses": {"share": asked.share, "seed": seed}})
-        words = ["closecall", "run", asked.scenario, "--seed", str(seed), "--threads", "1", "--log-clips", "none", "--quiet"]
+        words = [
+            "closecall",
+            "run",
+            asked.scenario,
+            "--seed",
+            str(seed),
+            "--threads",
+            "1",
+            "--log-clips",
+            "none",
+            "--quiet",
+        ]
         words += ["--roll-out", lapses, "--force", "--out", out, "--", "--collision.action", "none", *sumo]
         subprocess.run(words, check=True)
         return crashes(out)

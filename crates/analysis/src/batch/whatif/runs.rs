@@ -228,7 +228,6 @@ impl WhatIf {
         }
     }
 
-    #[expect(clippy::too_many_arguments, reason = "what a run is made of, named once")]
     fn run(
         &self,
         subject: &Subject,
