@@ -2,7 +2,7 @@
 //!
 //! Splitting in two levels with a fixed effort. The first level is a conflict: each repetition is a run of the scenario with a
 //! seed of its own, of whose conflicts some are chosen, with a probability proportional to their crash probability. The second
-//! is a contact: from SUMO's state before a chosen conflict its driver errs in each roll-out ([`WhatIf`]). With the share q of
+//! is a contact: from SUMO's state before a chosen conflict its driver errs in each roll-out (`closecall whatif`). With the share q of
 //! conflicts in which a driver errs, hours H, and the probability π with which a conflict was chosen,
 //!
 //! ```text

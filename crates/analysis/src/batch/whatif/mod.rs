@@ -1,8 +1,8 @@
 //! `closecall whatif`: conflicts of a run, rolled out again and again with drivers that err.
 //!
-//! The run is simulated once more and SUMO saves its state some seconds before each conflict ([`scenario`]). From there go, each
+//! The run is simulated once more and SUMO saves its state some seconds before each conflict (`scenario.rs`). From there go, each
 //! as a run of a sweep: a baseline without an error; the roll-outs, each with a seed and a drawn driver; for those that end in a
-//! contact the same again with the other driver braking too; and two with clips ([`runs`]). A roll-out is compared with the
+//! contact the same again with the other driver braking too; and two with clips (`runs.rs`). A roll-out is compared with the
 //! baseline, which goes on from the same state, not with the run: SUMO's states are not exact everywhere.
 
 mod answer;

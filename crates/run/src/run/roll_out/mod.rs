@@ -1,6 +1,6 @@
 //! A roll-out: the seconds of a conflict run again from a saved state, with drivers that err, until the first contact.
 //!
-//! [`driver::Steered`] says what a driver does that errs, and the bridge passes it on to SUMO. All other road users react as SUMO
+//! `driver.rs` says what a driver does that errs, and the bridge passes it on to SUMO. All other road users react as SUMO
 //! has them. What came of it is kept for `closecall whatif`: the paths, the drivers' errors, the contact.
 
 mod course;
