@@ -55,7 +55,7 @@ def percent(share: str) -> str:
     return f"{100 * float(share):.1f}"
 
 
-def row(column: str, form: Callable[[str], str] = str, **of: str) -> Callable[[str], Values]:
+def row(column: str, of: dict[str, str], form: Callable[[str], str] = str) -> Callable[[str], Values]:
     """Finds a value in the only row of a table with these values in other columns."""
 
     def find(source: str) -> Values:
@@ -100,7 +100,12 @@ CRASHES = {
 STUDY, VALIDATION, RESULTS = "docs/study/study.csv", "docs/validation.md", "tests/validation/results.csv"
 LEFT_TURN = "sumo_nets/left_turn/left_turn.sumocfg"
 CROSSING = {"axis": "volume", "parameter": "cross"}
-MISSED = "share of conflicts missed or invented"
+ON_STRAIGHT_PATHS = {
+    "axis": "path",
+    "method": "straight",
+    "parameter": "roundabout",
+    "error_name": "share of conflicts missed or invented",
+}
 
 PAPER_FIGURES = [
     Figure(
@@ -121,14 +126,14 @@ PAPER_FIGURES = [
         "misses {} % of pairs that cross, the exact predicate {} %",
         STUDY,
         several(
-            row("false_negative_rate", percent, method="vertex in side (paper)", **CROSSING),
-            row("false_negative_rate", percent, method="exact predicate", **CROSSING),
+            row("false_negative_rate", {"method": "vertex in side (paper)", **CROSSING}, percent),
+            row("false_negative_rate", {"method": "exact predicate", **CROSSING}, percent),
         ),
     ),
     Figure(
         "In a roundabout, {} % of the conflicts on straight paths are invented",
         STUDY,
-        row("false_positive_rate", percent, axis="path", method="straight", parameter="roundabout", error_name=MISSED),
+        row("false_positive_rate", ON_STRAIGHT_PATHS, percent),
     ),
     Figure("{} bounds hold", "closecall stress --cases 100000", pattern(r"all (\d+) bounds hold")),
     Figure("most of them against {}-bit arithmetic", "docs/study.md", pattern(r"Most references have (\d+) bits")),
@@ -149,7 +154,7 @@ PAPER_FIGURES = [
         "before {} real rear-end crashes, the crash probability tells them from {} crash-free pairs with an AUC of {} "
         "(95 % interval {} to {})",
         RESULTS,
-        several(*(row(column, **CRASHES) for column in ("crashes", "free", "value", "low", "high"))),
+        several(*(row(column, CRASHES) for column in ("crashes", "free", "value", "low", "high"))),
     ),
     Figure(
         "the level `likely` finds {} of them, `serious` {}",
