@@ -165,9 +165,12 @@ PAPER_FIGURES = [
         ),
     ),
     Figure(
-        "called {} % and {} % of severe conflicts at least borderline",
+        "called {} % and {} % of {} severe conflicts at least borderline",
         VALIDATION,
-        pattern(r"\*\*Two readers\*\* call (\d+) and (\d+) %"),
+        several(
+            pattern(r"\*\*Two readers\*\* call (\d+) and (\d+) %"),
+            pattern(r"judged (\d+) of \d+ severe conflicts"),
+        ),
     ),
     Figure(
         "it says {} %, where {} of {} roll-outs had a contact",
