@@ -6,7 +6,7 @@ export PYTHONDONTWRITEBYTECODE :=
 SOURCES := $(shell find src crates bridge/src bridge/python -type f -not -name '*.pyc') \
 	Cargo.toml Cargo.lock bridge/Cargo.toml bridge/build.rs pyproject.toml THIRD-PARTY.txt
 
-.PHONY: demo test test-all rust-tests lint regress stress study fuzz torture soak versions licences advisories accuracy validation bench quick docs clean help
+.PHONY: demo test test-all rust-tests lint regress stress study fuzz torture soak versions licences advisories accuracy validation paper bench quick docs clean help
 
 demo: $(VENV)/wheel ## set everything up and check the town in sumo_nets/
 	$(BIN)/closecall run sumo_nets/town/town.sumocfg --end 200 --out closecall-out -- --no-warnings
@@ -54,8 +54,8 @@ lint: $(VENV)/wheel $(VENV)/tests ## formatting, clippy, ruff, mypy, imports bet
 	cargo check --package closecall
 	cp Cargo.lock fuzz/Cargo.lock
 	cargo check --quiet --manifest-path fuzz/Cargo.toml --no-default-features --target-dir target
-	$(BIN)/ruff format --check bridge/python tests benches
-	$(BIN)/ruff check bridge/python tests benches
+	$(BIN)/ruff format --check bridge/python tests benches docs/paper
+	$(BIN)/ruff check bridge/python tests benches docs/paper
 	$(BIN)/mypy
 	$(PYTHON) .ci/imports.py
 	$(PYTHON) .ci/licences.py --check
@@ -91,6 +91,9 @@ accuracy: $(VENV)/wheel $(VENV)/tests ## precision and recall against the paths 
 
 validation: $(VENV)/wheel $(VENV)/tests ## real crashes against crash-free traffic: the tables of docs/validation.md
 	$(BIN)/python tests/validation/validate.py --page docs/validation.md
+
+paper: $(VENV)/wheel ## the figures of docs/paper/paper.md, and that its text has no other
+	PATH=$(CURDIR)/$(BIN):$$PATH $(BIN)/python docs/paper/figures.py
 
 PARTS := target/bench/parts
 

@@ -12,7 +12,15 @@ import re
 import sys
 from pathlib import Path
 
-FILES = ["pyproject.toml", "Cargo.toml", "CITATION.cff", "mkdocs.yml", "README.md"]
+FILES = [
+    "pyproject.toml",
+    "Cargo.toml",
+    "CITATION.cff",
+    "mkdocs.yml",
+    "README.md",
+    ".ci/recipe.yaml",
+    "docs/paper/contributed.md",
+]
 RELEASED = "# released: "
 """What these lines begin with before, so that nothing names an address that leads nowhere."""
 RELATIVE = re.compile(r"(!?)(\[[^\]]*\])\((?![a-z]+:|#)([^)\s]+)\)")

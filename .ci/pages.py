@@ -61,7 +61,8 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
     def on_site(target: str) -> str | None:
         full = posixpath.normpath(posixpath.join(posixpath.dirname(source), target))
         own = TOP.get(full, full.removeprefix("docs/"))
-        is_page = (full in TOP or full.startswith("docs/")) and files.get_file_from_path(own)
+        file = files.get_file_from_path(own) if full in TOP or full.startswith("docs/") else None
+        is_page = file is not None and file.inclusion.is_included()
         return posixpath.relpath(own, posixpath.dirname(name) or ".") if is_page else None
 
     def where(link: re.Match[str]) -> str:

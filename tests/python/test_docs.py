@@ -9,6 +9,7 @@ from __future__ import annotations
 import doctest
 import os
 import re
+import runpy
 import shutil
 import subprocess
 import sys
@@ -105,14 +106,16 @@ def test_a_page_does_what_it_says(page: str, once: Once, tmp_path: Path) -> None
 
 
 def test_a_release_has_no_placeholder_and_no_relative_link(tmp_path: Path) -> None:
-    for name in ("pyproject.toml", "Cargo.toml", "CITATION.cff", "mkdocs.yml", "README.md"):
-        shutil.copy(ROOT / name, tmp_path / name)
-    for file in tmp_path.iterdir():
+    address = runpy.run_path(str(ROOT / ".ci/address.py"))
+    files = [tmp_path / name for name in address["FILES"]]
+    for file in files:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / file.relative_to(tmp_path), file)
         lines = file.read_text(encoding="utf-8").splitlines()
         assert not [line for line in lines if "OWNER" in line and not line.startswith("# released: ")]
     command = [sys.executable, str(ROOT / ".ci/address.py"), "somebody/near-misses", "v0.1.0"]
     subprocess.run(command, cwd=tmp_path, check=True)
-    for file in tmp_path.iterdir():
+    for file in files:
         text = file.read_text(encoding="utf-8")
         assert "OWNER/" not in text and "# released" not in text
     assert "github.com/somebody/near-misses" in (tmp_path / "pyproject.toml").read_text(encoding="utf-8")
@@ -124,3 +127,11 @@ def test_each_block_of_code_has_a_kind(page: str) -> None:
     text = (ROOT / page).read_text(encoding="utf-8")
     assert len(BLOCK.findall(text)) * 2 == len(re.findall(r"^ *```", text, re.MULTILINE))
     assert not re.search(r"^ {4}\$? ?(closecall|make|pip) ", text, re.MULTILINE), "a command outside a block"
+
+
+def test_what_a_release_publishes_names_one_version() -> None:
+    found = {
+        name: re.search(r'^ *version(?: =|:) "?(\d+\.\d+\.\d+)"?$', (ROOT / name).read_text("utf-8"), re.MULTILINE)
+        for name in ("Cargo.toml", "CITATION.cff", ".ci/recipe.yaml")
+    }
+    assert len({version and version[1] for version in found.values()}) == 1, found
