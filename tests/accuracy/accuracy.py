@@ -73,6 +73,7 @@ def outcome(truth: Verdict | None, row: dict[str, str] | None) -> tuple[str, str
 def compare(recording: Recording, rows: dict[tuple[int, frozenset[str]], dict[str, str]], every: float) -> Tally:
     """Compare truth and report pair by pair, in steps that are `every` s apart."""
     tally = Tally()
+    entered = {(track.first, name) for name, tracks in recording.tracks.items() for track in tracks}
     stride = max(round(every / recording.step), 1)
     for step in range(0, recording.steps, stride):
         time = recording.begin + step * recording.step
@@ -87,6 +88,9 @@ def compare(recording: Recording, rows: dict[tuple[int, frozenset[str]], dict[st
                 before = step_truth(recording, step - 1) if before is None else before
                 if outcome(before.get(pair), row)[1] == "right":
                     verdict = before.get(pair)
+            if row is None and any((step, name) in entered for name in pair):
+                # Half a step before it was not there.
+                continue
             tally.add(time, verdict, row)
     return tally
 
