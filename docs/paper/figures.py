@@ -173,11 +173,13 @@ PAPER_FIGURES = [
         ),
     ),
     Figure(
-        "it says {} %, where {} of {} roll-outs had a contact",
-        f"closecall run {LEFT_TURN} --quiet --out log && closecall whatif log --worst 1 --rollouts 20",
+        "in roll-outs of {} conflicts, a mean probability of {} of followers became contacts in a share of {}, "
+        "but one of {} of left turns in {}",
+        "docs/whatif.md",
         lambda text: (
-            *pattern(r"by the formula (\d+) %")(text),
-            *pattern(r"contact in (\d+) of (\d+) roll-outs")(text),
+            *pattern(r"rolled out (\d+) conflicts")(text),
+            *pattern(r"\| `following` \| \d+ \| ([\d.]+) \| ([\d.]+) ")(text),
+            *pattern(r"\| `left_turn_across` \| \d+ \| ([\d.]+) \| ([\d.]+) ")(text),
         ),
     ),
 ]

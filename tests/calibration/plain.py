@@ -19,15 +19,18 @@ HORIZON = 8.0
 
 
 def crashes(folder: Path) -> tuple[int, float]:
-    """The errors of a run that end in a contact of the driver, and its simulated hours."""
+    """The crashes of a run that follow from errors, each once, also where both erred, and its simulated hours."""
     errors = json.loads((folder / "roll-out.json").read_text())["drivers"]
     with (folder / "conflicts.csv").open() as file:
-        struck = [row for row in csv.DictReader(file) if row["collision"] == "true" and not row["artefact"]]
-    count = 0
-    for error in errors:
-        if error["from"] is not None:
-            of_driver = [row for row in struck if error["id"] in (row["ego"], row["foe"])]
-            count += any(error["from"] - 1.0 <= float(row["time"]) <= error["from"] + HORIZON for row in of_driver)
+        collisions = [row for row in csv.DictReader(file) if row["collision"] == "true" and not row["artefact"]]
+    count, struck = 0, set[str]()
+    for error in sorted((error for error in errors if error["from"] is not None), key=lambda error: error["from"]):
+        within = error["from"] - 1.0, error["from"] + HORIZON
+        hit = [row for row in collisions if error["id"] in (row["ego"], row["foe"])]
+        hit = [row for row in hit if within[0] <= float(row["time"]) <= within[1]]
+        involved = {name for row in hit for name in (row["ego"], row["foe"])}
+        count += bool(hit) and not involved & struck
+        struck |= involved
     summary = json.loads((folder / "run.json").read_text())["summary"]
     return count, (summary["end"] - summary["begin"]) / 3600.0
 
