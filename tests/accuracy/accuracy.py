@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
+from collections.abc import Iterable
 from pathlib import Path
 
 from recording import Recording, record
@@ -63,7 +64,9 @@ def outcome(truth: Verdict | None, row: dict[str, str] | None) -> tuple[str, str
     if any(abs(margin) <= NEAR for margin in margins):
         return "", "near the limit"
     if row is not None:
-        fits = truth is not None and truth.margin < 0 and truth.kind in ("", row["kind"])
+        # A follower through a bend is rear-end whatever the angle; the judge knows angles only.
+        kinds = ("", "side" if row["manoeuvre"] == "following" else row["kind"], row["kind"])
+        fits = truth is not None and truth.margin < 0 and truth.kind in kinds
         return row["kind"], "right" if fits else "false"
     if truth is not None and truth.margin < 0:
         return truth.kind or "side", "missed"
@@ -91,8 +94,17 @@ def compare(recording: Recording, rows: dict[tuple[int, frozenset[str]], dict[st
             if row is None and any((step, name) in entered for name in pair):
                 # Half a step before it was not there.
                 continue
+            if row is None and verdict is not None and has_one_between(verdict, truth.values()):
+                tally.excluded["another between"] += 1
+                continue
             tally.add(time, verdict, row)
     return tally
+
+
+def has_one_between(verdict: Verdict, others: Iterable[Verdict]) -> bool:
+    """Whether another vehicle is between a follower and its leader: only neighbours make rear-end conflicts."""
+    nearer = (other for other in others if other.ego == verdict.ego and other.gap < verdict.gap)
+    return verdict.kind == "rear_end" and any(other.kind == "rear_end" for other in nearer)
 
 
 def main() -> int:
