@@ -7,6 +7,7 @@ import math
 import os
 import signal
 import subprocess
+import sys
 from pathlib import Path
 
 import psutil
@@ -35,7 +36,8 @@ def follower(once: Once) -> Path:
             (folder / f"a.{name}.xml").write_text(text)
         (folder / "a.sumocfg").write_text(CONFIGURATION)
         files = ["-n", "a.nod.xml", "-e", "a.edg.xml", "-o", "a.net.xml"]
-        subprocess.run(["netconvert", *files], cwd=folder, check=True, capture_output=True)
+        netconvert = Path(sys.executable).with_name("netconvert")
+        subprocess.run([netconvert, *files], cwd=folder, check=True, capture_output=True)
         run = closecall("run", folder / "a.sumocfg", "--out", folder / "log", "--quiet")
         assert run.returncode == 0, run.stderr
         asked = closecall("whatif", folder / "log", "--rollouts", ROLL_OUTS, "--out", folder / "whatif", "--quiet")
