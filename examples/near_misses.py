@@ -89,6 +89,17 @@ def sumo_rl(net: str, routes: str, seconds: int) -> gymnasium.Env[Any, Any]:
     return environment
 
 
+def episode(env: NearMisses) -> tuple[float, float, int]:
+    """An episode of random actions: the sums of its rewards and of the cost of near misses, and the number of alarms."""
+    env.reset(seed=1)
+    env.action_space.seed(1)
+    total, cost, alarms, is_over = 0.0, 0.0, 0, False
+    while not is_over:
+        _, reward, _, is_over, info = env.step(env.action_space.sample())
+        total, cost, alarms = total + reward, cost + info["near_misses"], alarms + len(info["alarms"])
+    return total, cost, alarms
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, help="a folder with a net and routes named after it")
@@ -96,12 +107,7 @@ def main() -> None:
     arguments = parser.parse_args()
     net, routes = (str(arguments.folder / f"{arguments.folder.name}.{kind}.xml") for kind in ("net", "rou"))
     env = NearMisses(sumo_rl(net, routes, arguments.end), weight=100.0)
-    env.reset(seed=1)
-    env.action_space.seed(1)
-    total, cost, alarms, is_over = 0.0, 0.0, 0, False
-    while not is_over:
-        _, reward, _, is_over, info = env.step(env.action_space.sample())
-        total, cost, alarms = total + reward, cost + info["near_misses"], alarms + len(info["alarms"])
+    total, cost, alarms = episode(env)
     env.close()
     print(f"reward {total:.2f}; near misses cost {cost:.3f}, {alarms} alarms")
 

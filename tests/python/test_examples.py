@@ -22,16 +22,8 @@ Copy = Callable[[str], Path]
 EPISODES = """
 import json, sys
 import near_misses
-def episode(env):
-    env.reset(seed=1)
-    env.action_space.seed(1)
-    total, cost, alarms, is_over = 0.0, 0.0, 0, False
-    while not is_over:
-        _, reward, _, is_over, info = env.step(env.action_space.sample())
-        total, cost, alarms = total + reward, cost + info["near_misses"], alarms + len(info["alarms"])
-    return total, cost, alarms
 env = near_misses.NearMisses(near_misses.sumo_rl(*sys.argv[1:3], 100), weight=float(sys.argv[3]))
-print(json.dumps([episode(env), episode(env)]))
+print(json.dumps([near_misses.episode(env), near_misses.episode(env)]))
 env.close()
 """
 

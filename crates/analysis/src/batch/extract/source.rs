@@ -58,7 +58,7 @@ impl Period {
         Self::around(run, [begin, end], [BEFORE, AFTER])
     }
 
-    /// The same, with so many seconds before and after it.
+    /// The same, with other times before and after it.
     pub(in crate::batch) fn around(run: &LoggedRun, [begin, end]: [Second; 2], [before, after]: [Second; 2]) -> Self {
         let step = run.step_length.unwrap_or(1.0);
         let counted = run.summary.begin;

@@ -69,7 +69,7 @@ pub struct Answer {
     pub clip_with_contact: String,
     /// That of one without.
     pub clip_without: String,
-    /// Why there is no answer, or what to know about it.
+    /// Why the conflict was not rolled out, or what to know about the answer.
     pub remark: String,
 }
 
