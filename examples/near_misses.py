@@ -90,7 +90,7 @@ def sumo_rl(net: str, routes: str, seconds: int) -> gymnasium.Env[Any, Any]:
 
 
 def episode(env: NearMisses) -> tuple[float, float, int]:
-    """An episode of random actions: the sums of its rewards and of the cost of near misses, and the number of alarms."""
+    """An episode of random actions: the sum of its rewards, that of the cost of near misses, the number of alarms."""
     env.reset(seed=1)
     env.action_space.seed(1)
     total, cost, alarms, is_over = 0.0, 0.0, 0, False
