@@ -101,7 +101,7 @@ bench: $(VENV)/wheel $(VENV)/benches ## what the checker costs: each goal with i
 	rm -rf target/bench && mkdir -p $(PARTS) target/bench/scenes
 	cargo bench --no-run --bench detector --bench cores --bench replay --bench memory
 	$(BIN)/python benches/attached.py > $(PARTS)/attached.csv
-	cargo bench --bench detector -- --scenes target/bench/scenes > $(PARTS)/detector.csv
+	cargo bench --bench detector -- --scenes $(CURDIR)/target/bench/scenes > $(PARTS)/detector.csv
 	cargo bench --bench cores > $(PARTS)/cores.csv
 	$(BIN)/python benches/exclusions.py > $(PARTS)/exclusions.csv
 	-$(BIN)/python benches/commonroad.py target/bench/scenes > $(PARTS)/commonroad.csv
