@@ -1,62 +1,77 @@
 //! Conflicts of several runs, worst first; of many, only the worst are kept.
 
-use std::cmp::{Ordering, Reverse};
+use std::cmp::Reverse;
 
+use super::conflict_table::ConflictTable;
+use closecall::detection::kind::{Kind, Severity};
 use closecall_run::output::rank::Rank;
 use closecall_run::output::schema::LoggedConflict;
 
 /// The most conflicts that are kept for a report or a picture.
 pub const MOST: usize = 300_000;
-/// Conflicts beyond the most are sorted out in batches of this part of them: each takes over a kilobyte.
-const BATCH: usize = 8;
+/// Conflicts beyond the most are sorted out in batches of this part of them: each takes over half a kilobyte.
+const BATCH: usize = 16;
 
-/// A conflict, and the run that it is of.
-#[derive(Clone, Debug)]
+/// A conflict of a [`ConflictTable`], and the run that it is of. Sorted, they are in the order of the logs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct RunConflict {
     /// Place of the run among the logs.
     pub run: u32,
-    /// The conflict, with its snapshots.
-    pub conflict: LoggedConflict,
+    /// The conflict's number in its log.
+    pub id: u64,
+    /// Its kind.
+    pub kind: Kind,
+    /// Its severity.
+    pub severity: Severity,
+    /// Its row in the table.
+    pub row: u32,
 }
 
-/// What conflicts are sorted by, worst first; equal ones in the order of the logs.
-type Key = (Reverse<Rank>, u32, u64);
-
-fn key(run: u32, conflict: &LoggedConflict) -> Key {
-    (Reverse(conflict.into()), run, conflict.id)
+impl RunConflict {
+    /// What finds it among the logs.
+    pub fn key(&self) -> (u32, u64) {
+        (self.run, self.id)
+    }
 }
 
-fn worst_first(a: &RunConflict, b: &RunConflict) -> Ordering {
-    key(a.run, &a.conflict).cmp(&key(b.run, &b.conflict))
-}
+/// Sorted, the worst comes first; equal ones are in the order of the logs.
+type Ranked = (Reverse<Rank>, RunConflict);
 
 /// The worst conflicts: memory stays bounded however many there are.
 #[derive(Debug)]
 pub(crate) struct KeptConflicts {
     most: usize,
-    kept: Vec<RunConflict>,
+    kept: Vec<Ranked>,
+    table: ConflictTable,
+    /// Rows of the table whose conflicts are no longer kept.
+    free: Vec<u32>,
     /// As many as are kept are worse than this.
-    bound: Option<Key>,
+    bound: Option<Ranked>,
     seen: u64,
 }
 
 impl KeptConflicts {
     /// Keeps this many at most.
     pub fn new(most: usize) -> Self {
-        Self { most, kept: Vec::new(), bound: None, seen: 0 }
+        Self { most, kept: Vec::new(), table: ConflictTable::default(), free: Vec::new(), bound: None, seen: 0 }
     }
 
     /// Adds a conflict; copies it only if it may be kept.
     pub fn push(&mut self, run: u32, conflict: &LoggedConflict) {
         self.seen += 1;
-        if self.bound.is_some_and(|bound| key(run, conflict) >= bound) {
+        let LoggedConflict { id, kind, severity, .. } = *conflict;
+        let row = self.free.last().copied().unwrap_or(self.kept.len() as u32);
+        let ranked = (Reverse(conflict.into()), RunConflict { run, id, kind, severity, row });
+        if self.bound.is_some_and(|bound| ranked >= bound) {
             return;
         }
-        self.kept.push(RunConflict { run, conflict: conflict.clone() });
+        self.free.pop();
+        self.table.set(row, conflict);
+        self.kept.push(ranked);
         if self.kept.len() > self.most + self.most / BATCH {
-            let (_, bound, _) = self.kept.select_nth_unstable_by(self.most, worst_first);
-            self.bound = Some(key(bound.run, &bound.conflict));
-            self.kept.truncate(self.most);
+            let (_, bound, _) = self.kept.select_nth_unstable(self.most);
+            self.bound = Some(*bound);
+            self.free.extend(self.kept.drain(self.most..).map(|(_, one)| one.row));
         }
     }
 
@@ -65,11 +80,11 @@ impl KeptConflicts {
         self.seen
     }
 
-    /// The conflicts that are kept, worst first.
-    pub(crate) fn into_sorted(mut self) -> Vec<RunConflict> {
-        self.kept.sort_unstable_by(worst_first);
+    /// The conflicts that are kept, worst first, and the table that has their rows.
+    pub(crate) fn into_sorted(mut self) -> (Vec<RunConflict>, ConflictTable) {
+        self.kept.sort_unstable();
         self.kept.truncate(self.most);
-        self.kept
+        (self.kept.into_iter().map(|(_, one)| one).collect(), self.table)
     }
 }
 
@@ -82,15 +97,17 @@ mod tests {
     fn the_worst_are_kept_in_whatever_order_they_come() {
         let conflicts = (0..200_u32).map(|number| {
             let ttc = f64::from(number.wrapping_mul(73) % 200 / 3).to_string();
-            let conflict = sample(&[("id", &number.to_string()), ("ttc", &ttc)]).unwrap();
-            RunConflict { run: number % 3, conflict }
+            let (cause, t2) = (["", "stood"][number as usize % 2], ["", "2.5"][number as usize / 150]);
+            let values = [("id", &*number.to_string()), ("ttc", &ttc), ("cause", cause), ("t2", t2), ("lon", "")];
+            (number % 3, sample(&values).unwrap())
         });
         let mut all = conflicts.collect::<Vec<_>>();
         let mut kept = KeptConflicts::new(20);
-        all.iter().for_each(|one| kept.push(one.run, &one.conflict));
+        all.iter().for_each(|(run, conflict)| kept.push(*run, conflict));
         assert_eq!(kept.seen(), 200);
-        all.sort_by(worst_first);
-        let of = |found: &[RunConflict]| found.iter().map(|one| one.conflict.id).collect::<Vec<_>>();
-        assert_eq!(of(&kept.into_sorted()), of(&all[..20]));
+        all.sort_by_key(|(run, conflict)| (Reverse(Rank::from(conflict)), *run, conflict.id));
+        let (kept, table) = kept.into_sorted();
+        let kept = kept.iter().map(|one| (one.run, table.conflict(one.row).unwrap())).collect::<Vec<_>>();
+        assert_eq!(kept, all[..20]);
     }
 }

@@ -1,5 +1,6 @@
 //! The conflicts of several logs, and their net: the input of a report or a picture.
 
+pub(crate) mod conflict_table;
 pub(crate) mod kept;
 mod logs;
 pub(crate) mod nets;
@@ -16,8 +17,8 @@ use closecall::detection::kind::{Kind, Severity};
 use closecall::geometry::Point;
 use closecall::traffic::net::Net;
 use closecall::util::units::Second;
-use closecall_run::output::schema::LoggedConflict;
 use closecall_run::output::summary::{SetAside, in_words};
+use conflict_table::ConflictTable;
 use kept::{KeptConflicts, MOST, RunConflict};
 use nets::Ground;
 
@@ -34,6 +35,8 @@ pub struct Conflicts {
     pub(super) ground: Ground,
     /// The conflicts, worst first.
     pub(super) conflicts: Vec<RunConflict>,
+    /// Their rows.
+    pub(super) table: ConflictTable,
     /// How many there are in the logs.
     pub(super) seen: u64,
     /// How many others are none of traffic's, and why, in words.
@@ -127,9 +130,22 @@ pub fn read(
     let scope = Scope { place: !filter.places.is_empty(), period: filter.has_period(), artefacts: filter.artefacts };
     let named = filter.named.clone();
     let filter = (!filter.is_empty()).then(|| filter.to_string());
-    let conflicts = worst.into_sorted();
+    let (conflicts, table) = worst.into_sorted();
     let variants = variants.all;
-    Ok(Conflicts { logs, records, variants, ground, conflicts, seen, set_aside: aside, filter, scope, named, lost })
+    Ok(Conflicts {
+        logs,
+        records,
+        variants,
+        ground,
+        conflicts,
+        table,
+        seen,
+        set_aside: aside,
+        filter,
+        scope,
+        named,
+        lost,
+    })
 }
 
 /// The variants of the runs with these records, and how many conflicts those counted. A run without a result belongs to none.
@@ -152,26 +168,23 @@ impl Conflicts {
 
     /// Kind, severity and conflict point of each.
     pub fn places(&self) -> impl Iterator<Item = (Kind, Severity, Point)> {
+        let [x, y] = ["x", "y"].map(|name| self.table.numbers(name));
         self.conflicts
             .iter()
-            .map(|RunConflict { conflict, .. }| (conflict.kind, conflict.severity, Point::new(conflict.x, conflict.y)))
+            .filter_map(move |one| Some((one.kind, one.severity, Point::new(x(one.row)?, y(one.row)?))))
     }
 
-    /// The values of a measure, each with the conflict's severity.
-    pub fn numbers(&self, measure: fn(&LoggedConflict) -> Option<f64>) -> impl Iterator<Item = (Severity, f64)> {
-        self.conflicts
-            .iter()
-            .filter_map(move |RunConflict { conflict, .. }| Some((conflict.severity, measure(conflict)?)))
+    /// The largest value of each conflict in these columns, with its severity.
+    pub fn numbers<'a>(&'a self, columns: &[&str]) -> impl Iterator<Item = (Severity, f64)> + use<'a> {
+        let numbers = columns.iter().map(|name| self.table.numbers(name)).collect::<Vec<_>>();
+        let largest = move |row| numbers.iter().filter_map(|number| number(row)).reduce(f64::max);
+        self.conflicts.iter().filter_map(move |one| Some((one.severity, largest(one.row)?)))
     }
 
     /// First and last second of all runs.
     pub fn period(&self) -> (Second, Second) {
         let of_run = |key| self.records.iter().filter_map(move |record| record.get("summary")?.get(key)?.as_f64());
-        let times = self
-            .numbers(|conflict| Some(conflict.time))
-            .map(|(_, time)| time)
-            .chain(of_run("begin"))
-            .chain(of_run("end"));
+        let times = self.numbers(&["time"]).map(|(_, time)| time).chain(of_run("begin")).chain(of_run("end"));
         let (begin, end) = times.fold((f64::INFINITY, 0.0), |(begin, end), time| (time.min(begin), time.max(end)));
         (begin.min(end), end)
     }

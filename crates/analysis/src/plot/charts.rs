@@ -8,7 +8,6 @@ use super::chart::{Chart, INK, PictureStyle, colour, message};
 use crate::dataset::Conflicts;
 use closecall::detection::kind::Severity;
 use closecall::util::units::Second;
-use closecall_run::output::schema::LoggedConflict;
 
 /// The number of bars of a distribution.
 const BARS: f64 = 30.0;
@@ -38,25 +37,23 @@ pub(crate) struct ChartedMeasure {
     title: &'static str,
     /// What the axis says.
     axis: &'static str,
-    of: fn(&LoggedConflict) -> Option<f64>,
+    /// Its columns in the log, of which the largest value counts.
+    columns: &'static [&'static str],
 }
 
 /// The measures that have a chart, the same as on the report's page.
 pub(crate) const MEASURES: [ChartedMeasure; 5] = [
-    ChartedMeasure { name: "ttc", title: "Time to collision", axis: "TTC, s", of: |conflict| conflict.ttc },
+    ChartedMeasure { name: "ttc", title: "Time to collision", axis: "TTC, s", columns: &["ttc"] },
     ChartedMeasure {
-        name: "drac",
-        title: "Deceleration to avoid a collision",
-        axis: "DRAC, m/s²",
-        of: |conflict| conflict.drac,
+        name: "drac", title: "Deceleration to avoid a collision", axis: "DRAC, m/s²", columns: &["drac"]
     },
-    ChartedMeasure { name: "pet", title: "Post-encroachment time", axis: "PET, s", of: |conflict| conflict.pet },
-    ChartedMeasure { name: "margin", title: "Margin", axis: "gap − μ, m", of: |conflict| Some(conflict.margin) },
+    ChartedMeasure { name: "pet", title: "Post-encroachment time", axis: "PET, s", columns: &["pet"] },
+    ChartedMeasure { name: "margin", title: "Margin", axis: "gap − μ, m", columns: &["margin"] },
     ChartedMeasure {
         name: "delta_v",
         title: "Largest speed change in a collision",
         axis: "ΔV, m/s",
-        of: |conflict| Some(conflict.delta_v()),
+        columns: &["ego_delta_v", "foe_delta_v"],
     },
 ];
 
@@ -140,7 +137,7 @@ impl Chart for TimeLine {
         let width = if length >= LONG { width.max(60.0) } else { width };
         let low = (begin / width).floor() * width;
         let mut bars = Bars::new(low, low + ((end - low) / width).floor() * width + width, width);
-        found.numbers(|conflict| Some(conflict.time)).for_each(|(severity, time)| bars.add(time, severity));
+        found.numbers(&["time"]).for_each(|(severity, time)| bars.add(time, severity));
         let y = format!("Conflicts per {width} s");
         draw(area, &bars, &Words { title: "Conflicts over time", x: "Time, s", y: &y, threshold: None }, style)
     }
@@ -154,7 +151,7 @@ impl Chart for Distribution {
         style: PictureStyle,
     ) -> Result<(), String> {
         let threshold = found.threshold(self.0.name);
-        let mut sizes = found.numbers(self.0.of).map(|(_, value)| value.abs()).collect::<Vec<_>>();
+        let mut sizes = found.numbers(self.0.columns).map(|(_, value)| value.abs()).collect::<Vec<_>>();
         sizes.sort_by(f64::total_cmp);
         let covered = sizes.get((COVERED * sizes.len() as f64) as usize).or(sizes.last()).copied().unwrap_or(1.0);
         let furthest = round_up(covered.max(threshold.map_or(0.0, |threshold| threshold * 1.3)));
@@ -162,11 +159,11 @@ impl Chart for Distribution {
         let width = threshold.map_or(furthest / BARS, |at| at / (at * BARS / furthest).round().max(1.0));
         let reach = (furthest / width - 1e-9).ceil() * width;
         // Only a log of a wider condition has margins above 0.
-        let has_positive = || found.numbers(self.0.of).any(|(_, value)| value > 0.0);
+        let has_positive = || found.numbers(self.0.columns).any(|(_, value)| value > 0.0);
         let high = if self.0.name != "margin" || has_positive() { reach } else { 0.0 };
         let low = if self.0.name == "margin" { -reach } else { 0.0 };
         let mut bars = Bars::new(low, high, width);
-        found.numbers(self.0.of).for_each(|(severity, value)| bars.add(value, severity));
+        found.numbers(self.0.columns).for_each(|(severity, value)| bars.add(value, severity));
         let words = if self.0.name == "ttc" { "serious below" } else { "serious above" };
         let threshold = threshold.map(|at| (at, words));
         draw(area, &bars, &Words { title: self.0.title, x: self.0.axis, y: "Conflicts", threshold }, style)

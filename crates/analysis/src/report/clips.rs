@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use rustc_hash::FxHashMap;
 use serde_json::{Value, json};
 
+use crate::dataset::conflict_table::ConflictTable;
 use crate::dataset::kept::RunConflict;
 use crate::dataset::nets::Ground;
 use crate::playback::{clips, signal_bar, signal_colour};
@@ -15,7 +16,6 @@ use closecall::events::{Clip, ClipUser};
 use closecall::geometry::Point;
 use closecall::traffic::net::Net;
 use closecall::util::units::Metre;
-use closecall_run::output::schema::LoggedConflict;
 
 /// Others are left out that never come this near to the conflict, in m: the page shows no more.
 const SHOWN: Metre = 50.0;
@@ -29,14 +29,14 @@ const THOUSANDTHS: f64 = 1000.0;
 /// # Errors
 /// [`Error::file`] where a file cannot be read.
 pub(crate) fn of_worst(
-    worst: &[RunConflict],
+    (worst, table): (&[RunConflict], &ConflictTable),
     logs: &[PathBuf],
     most_bytes: usize,
     ground: &mut Ground,
 ) -> Result<FxHashMap<(u32, u64), Value>> {
     let mut all = FxHashMap::default();
     for (run, log) in (0..).zip(logs) {
-        let ids = worst.iter().filter(|one| one.run == run).map(|one| one.conflict.id).collect::<Vec<_>>();
+        let ids = worst.iter().filter(|one| one.run == run).map(|one| one.id).collect::<Vec<_>>();
         if ids.is_empty() {
             continue;
         }
@@ -46,10 +46,11 @@ pub(crate) fn of_worst(
             Err(error) => ground.notes.push(format!("No playback: {error}.")),
         }
     }
+    let [x, y] = ["x", "y"].map(|name| table.numbers(name));
     let mut bytes = 0;
     let of = |one: &RunConflict| {
-        let key = (one.run, one.conflict.id);
-        Some((key, json(all.get(&key)?, &one.conflict, ground.net.as_ref())))
+        let at = Point::new(x(one.row)?, y(one.row)?);
+        Some((one.key(), json(all.get(&one.key())?, at, ground.net.as_ref())))
     };
     let fits = |(_, clip): &((u32, u64), Value)| {
         bytes += clip.to_string().len();
@@ -58,9 +59,8 @@ pub(crate) fn of_worst(
     Ok(worst.iter().filter_map(of).take_while(fits).collect())
 }
 
-/// A clip as JSON. Times are in ms, places in cm, headings and times left in hundredths, speeds in cm/s.
-fn json(clip: &Clip, conflict: &LoggedConflict, net: Option<&Net>) -> Value {
-    let at = Point::new(conflict.x, conflict.y);
+/// A clip as JSON, of a conflict at this place. Times are in ms, places in cm, headings and times left in hundredths, speeds in cm/s.
+fn json(clip: &Clip, at: Point, net: Option<&Net>) -> Value {
     let is_near = |user: &ClipUser| {
         let places = user.x.iter().zip(&user.y).filter_map(|(x, y)| x.zip(*y));
         let corners = user.outlines.iter().flatten().map(|[x, y]| (*x, *y));

@@ -4,7 +4,9 @@
 //! that draw them. All of them are in one file, which works offline and sends nothing anywhere. `--summary` writes another
 //! template (`summary.html`) with the scripts that it needs.
 
+mod approaches;
 mod clips;
+mod columns;
 mod contact;
 mod data;
 mod faults;
@@ -12,6 +14,7 @@ mod movements;
 mod page_net;
 mod reading;
 mod remarks;
+mod sink;
 mod streets;
 mod tiles;
 
@@ -25,7 +28,8 @@ use super::statistics::Effects;
 use super::style;
 use crate::Result;
 use closecall_run::util::output_file::OutputFile;
-use data::Details;
+use data::{Data, Details};
+use sink::Sink;
 
 pub use tiles::TileUrl;
 
@@ -160,13 +164,13 @@ pub fn write(request: &Request, out: &Path, progress: &mut Progress) -> Result<M
     };
     let (shown, details) = if is_summary { (SUMMARY, Details::SUMMARY) } else { (REPORT, Details::REPORT) };
     let details = clips.map_or(details, |clips| details.with_clips(clips));
-    let data = data::json(conflicts, before, details, tiles)?;
+    let data = Data::of(conflicts, before, details, tiles)?;
     let whatif = whatif.map_or_else(|| Ok(String::new()), sections)?;
     let mut file = OutputFile::create(out)?;
     let mut bytes = 0;
-    page(&shown, tiles, &whatif, &data, |part| {
+    page(&shown, tiles, &whatif, |to| data.write(to), &mut |part| {
         bytes += part.len();
-        Ok(file.append(part.as_bytes())?)
+        Ok(file.append(part)?)
     })?;
     file.finish()?;
     Ok(Made { runs, conflicts: seen, set_aside, bytes, lost })
@@ -178,26 +182,29 @@ fn page(
     page: &Page,
     tiles: Option<&TileUrl>,
     whatif: &str,
-    data: &str,
-    mut write: impl FnMut(&str) -> Result<()>,
+    data: impl FnOnce(&mut Sink) -> Result<()>,
+    to: &mut Sink,
 ) -> Result<()> {
-    let scripts = page.scripts.concat();
     let style = if page.is_sheet { style::sheet().replace("@media print", "@media all") } else { style::sheet() };
-    let mut rest = page.template;
-    let library = page.library.map(|library| (LIBRARY, library));
     // The policy of the page lets it ask this server only.
     let tiles = tiles.map_or_else(String::new, |tiles| format!(" {}", tiles.origin()));
-    let tiles = page.template.contains(TILES).then_some((TILES, &*tiles));
-    let whatif = page.template.contains(WHAT_IF).then_some((WHAT_IF, whatif));
-    let parts = tiles.into_iter().chain([(STYLE, &*style)]).chain(whatif).chain([(DATA, data)]);
-    let parts = parts.chain(library).chain([(SCRIPTS, &*scripts)]);
+    let (head, tail) = page.template.split_once(DATA).unwrap_or((page.template, ""));
+    fill(head, &[(TILES, &tiles), (STYLE, &style), (WHAT_IF, whatif)], to)?;
+    data(to)?;
+    fill(tail, &[(LIBRARY, page.library.unwrap_or_default()), (SCRIPTS, &page.scripts.concat())], to)
+}
+
+/// Writes a part of a template; marks that it does not have are skipped.
+fn fill(template: &str, parts: &[(&str, &str)], to: &mut Sink) -> Result<()> {
+    let mut rest = template;
     for (mark, part) in parts {
-        let (before, after) = rest.split_once(mark).unwrap_or((rest, ""));
-        write(before)?;
-        write(part)?;
-        rest = after;
+        if let Some((before, after)) = rest.split_once(mark) {
+            to(before.as_bytes())?;
+            to(part.as_bytes())?;
+            rest = after;
+        }
     }
-    write(rest)
+    to(rest.as_bytes())
 }
 
 #[cfg(test)]
@@ -219,12 +226,13 @@ mod tests {
 
     #[test]
     fn data_that_looks_like_a_mark_stays_data() {
-        let mut text = String::new();
-        page(&REPORT, None, "", "[\"{{scripts}}\"]", |part| {
-            text += part;
+        let mut text = Vec::new();
+        let data = |to: &mut Sink| to(b"[\"{{scripts}}\"]");
+        page(&REPORT, None, "", data, &mut |part| {
+            text.extend_from_slice(part);
             Ok(())
         })
         .unwrap();
-        assert!(text.contains("[\"{{scripts}}\"]"));
+        assert!(String::from_utf8(text).unwrap().contains("[\"{{scripts}}\"]"));
     }
 }

@@ -1,43 +1,22 @@
 //! The movements of a conflict's road users through its junction, for the page's diagrams, and which had to yield: from the
 //! lanes in the log and, where several ways lead on, from the predicted path. Without a net only the edges' names are known.
 
-use std::collections::BTreeMap;
-
 use rustc_hash::FxHashMap;
 use serde_json::{Value, json};
 
+use super::approaches::{Approaches, Role, middle_of};
 use closecall::detection::path::Foot;
-use closecall::geometry::{Bounds, Point};
+use closecall::geometry::Point;
 use closecall::traffic::net::{Direction, EdgeFunction, EdgeIndex, JunctionIndex, LaneIndex, Net, Passage};
-use closecall::util::units::{Metre, Radian};
+use closecall::util::units::Metre;
 use closecall_run::output::schema::LoggedConflict;
 
-/// An approach lies where it is this far from the junction, in m: close to it, lanes of one road lie far apart.
-const AWAY: Metre = 40.0;
 /// A path takes the lanes that it is within this distance of, in m.
 const BESIDE: Metre = 1.2;
 /// A person this near to a crossing is on it, in m.
 const AT_CROSSING: Metre = 1.0;
 /// The distance between the places of a path that are compared with lanes, in m.
 const STEP: Metre = 1.0;
-
-/// What an approach is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Role {
-    In,
-    Out,
-    OnFoot,
-}
-
-/// A place at the edge of a junction.
-#[derive(Clone, Debug)]
-struct Approach {
-    /// Its edge.
-    name: String,
-    /// Its direction from the junction's middle, counter-clockwise from +x; none without a net.
-    angle: Option<Radian>,
-    role: Role,
-}
 
 /// What is known of a way through a junction: places among the junction's approaches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -62,9 +41,7 @@ type Ways<'a> = Vec<&'a Passage>;
 /// The movements of the conflicts within junctions.
 pub(crate) struct Movements<'a> {
     net: Option<&'a Net>,
-    /// The edges of vehicles that begin or end at each junction.
-    edges: FxHashMap<JunctionIndex, Vec<(EdgeIndex, Role)>>,
-    approaches: BTreeMap<String, Vec<Approach>>,
+    approaches: Approaches<'a>,
     list: Vec<Movement>,
     places: FxHashMap<Movement, usize>,
 }
@@ -72,15 +49,7 @@ pub(crate) struct Movements<'a> {
 impl<'a> Movements<'a> {
     /// Those in a net, none yet.
     pub fn of(net: Option<&'a Net>) -> Self {
-        let mut edges = FxHashMap::<_, Vec<_>>::default();
-        for (index, edge) in net.iter().flat_map(|net| net.edges.iter_enumerated()) {
-            let is_road = |net: &Net| edge.lanes.iter().any(|lane| net.lanes[*lane].has_vehicles);
-            if edge.function == EdgeFunction::Normal && net.is_some_and(is_road) {
-                edges.entry(edge.ends[0]).or_default().push((index, Role::Out));
-                edges.entry(edge.ends[1]).or_default().push((index, Role::In));
-            }
-        }
-        Self { net, edges, approaches: BTreeMap::new(), list: Vec::new(), places: FxHashMap::default() }
+        Self { net, approaches: Approaches::of(net), list: Vec::new(), places: FxHashMap::default() }
     }
 
     /// Both movements of a conflict; none outside junctions and where the log has no lanes.
@@ -109,18 +78,8 @@ impl<'a> Movements<'a> {
 
     /// For each junction its approaches, and all movements.
     pub fn json(&self) -> Value {
-        let approach = |Approach { name, angle, role }: &Approach| {
-            let street = self.net.and_then(|net| Some(&net.edges[*net.edge_ids.get(name)?].street));
-            let name = street.map(|street| street.as_str()).filter(|street| !street.is_empty()).unwrap_or(name);
-            json!([name, angle.map(|angle| (angle * 100.0).round() / 100.0), *role as u8])
-        };
-        let of_junction =
-            |(name, all): (&String, &Vec<Approach>)| (format!("junction {name}"), all.iter().map(approach).collect());
         let movement = |Movement { from, to, turn }: &Movement| json!([from, to, turn]);
-        json!({
-            "approaches": self.approaches.iter().map(of_junction).collect::<BTreeMap<_, Vec<_>>>(),
-            "list": self.list.iter().map(movement).collect::<Vec<_>>(),
-        })
+        json!({ "approaches": self.approaches.json(), "list": self.list.iter().map(movement).collect::<Vec<_>>() })
     }
 
     /// Without a net: the edge before the junction; of one within the junction nothing is known.
@@ -129,7 +88,7 @@ impl<'a> Movements<'a> {
             return Movement::default();
         }
         let name = lane.rsplit_once('_').map_or(lane, |(edge, _)| edge);
-        let from = self.place(junction, name, Role::In, None);
+        let from = self.approaches.place(junction, name, Role::In, None);
         Movement { from: Some(from), ..Movement::default() }
     }
 
@@ -139,10 +98,7 @@ impl<'a> Movements<'a> {
             return None;
         }
         let (junction, at) = (&*edge.junction, edge.ends[0]);
-        if !self.approaches.contains_key(junction) {
-            let all = self.approaches_of(net, at);
-            self.approaches.insert(junction.to_owned(), all);
-        }
+        self.approaches.add_roads(net, junction, at);
         let LoggedConflict { ego_lane, ego_x, ego_y, ego_path, foe_lane, foe_x, foe_y, foe_path, .. } = conflict;
         // The log does not tell which one is the person: it is the shorter one.
         let is_ego_shorter = conflict.ego_length < conflict.foe_length;
@@ -163,8 +119,8 @@ impl<'a> Movements<'a> {
     /// The movement of a person: its crossing, or the pavement that it is on.
     fn on_foot(&mut self, net: &Net, junction: &str, at: JunctionIndex, lane: LaneIndex) -> Movement {
         let lane = &net.lanes[lane];
-        let angle = angle(self.middle(net, at), middle_of(&lane.shape));
-        let place = self.place(junction, &net.edges[lane.edge].id, Role::OnFoot, Some(angle));
+        let angle = self.approaches.angle(net, at, middle_of(&lane.shape));
+        let place = self.approaches.place(junction, &net.edges[lane.edge].id, Role::OnFoot, Some(angle));
         Movement { from: Some(place), to: Some(place), turn: None }
     }
 
@@ -178,10 +134,7 @@ impl<'a> Movements<'a> {
     ) -> (Movement, Ways<'a>) {
         let index = net.lanes[lane].edge;
         let edge = &net.edges[index];
-        let place_of = |edge: EdgeIndex, role| {
-            let name = &net.edges[edge].id;
-            self.approaches[junction].iter().position(|known| known.name == *name && known.role == role)
-        };
+        let place_of = |edge: EdgeIndex, role| self.approaches.known(junction, &net.edges[edge].id, role);
         let edge_of = |lane: LaneIndex| net.lanes[lane].edge;
         if let Some(passage) = net.passage(lane).filter(|_| edge.ends[0] == at) {
             let movement = Movement {
@@ -222,35 +175,6 @@ impl<'a> Movements<'a> {
         let alike = passages.iter().copied().filter(is_alike).collect::<Ways>();
         (Movement { from, to, turn: passage.map(|passage| turn(passage.direction)) }, alike)
     }
-
-    /// The place of an approach, which is added where it is new.
-    fn place(&mut self, junction: &str, name: &str, role: Role, angle: Option<Radian>) -> usize {
-        let all = self.approaches.entry(junction.to_owned()).or_default();
-        all.iter().position(|known| known.name == name && known.role == role).unwrap_or_else(|| {
-            all.push(Approach { name: name.to_owned(), angle, role });
-            all.len() - 1
-        })
-    }
-
-    /// The roads at a junction.
-    fn approaches_of(&self, net: &Net, at: JunctionIndex) -> Vec<Approach> {
-        let middle = self.middle(net, at);
-        let one = |&(edge, role): &(EdgeIndex, Role)| Approach {
-            name: net.edges[edge].id.clone(),
-            angle: Some(angle(middle, point_of(net, edge, role, AWAY))),
-            role,
-        };
-        self.edges.get(&at).into_iter().flatten().map(one).collect()
-    }
-
-    /// The middle of a junction: of the box around the ends of its roads.
-    fn middle(&self, net: &Net, at: JunctionIndex) -> Point {
-        let mut bounds = Bounds::EMPTY;
-        for (edge, role) in self.edges.get(&at).into_iter().flatten() {
-            bounds.include(point_of(net, *edge, *role, 0.0));
-        }
-        Point::from((bounds.low.coords + bounds.high.coords) / 2.0)
-    }
 }
 
 /// Which of two has to yield to the other, where that is the same on all ways that they may take.
@@ -268,36 +192,6 @@ fn is_on_foot(net: &Net, lane: LaneIndex) -> bool {
         EdgeFunction::Normal => !net.lanes[lane].has_vehicles,
         EdgeFunction::Internal | EdgeFunction::Connector => false,
     }
-}
-
-/// Where an edge is that far from the junction, on its middle lane.
-fn point_of(net: &Net, edge: EdgeIndex, role: Role, away: Metre) -> Point {
-    let lanes = &net.edges[edge].lanes;
-    let mut shape = net.lanes[lanes[lanes.len() / 2]].shape.clone();
-    if role == Role::In {
-        shape.reverse();
-    }
-    let mut left = away;
-    for ends in shape.windows(2) {
-        let displacement = ends[1] - ends[0];
-        let length = displacement.norm();
-        if length > left {
-            return ends[0] + displacement * (left / length);
-        }
-        left -= length;
-    }
-    shape[shape.len() - 1]
-}
-
-fn middle_of(shape: &[Point]) -> Point {
-    let mut bounds = Bounds::EMPTY;
-    shape.iter().for_each(|point| bounds.include(*point));
-    Point::from((bounds.low.coords + bounds.high.coords) / 2.0)
-}
-
-fn angle(middle: Point, place: Point) -> Radian {
-    let displacement = place - middle;
-    displacement.y.atan2(displacement.x)
 }
 
 fn is_beside(net: &Net, lane: LaneIndex, place: Point) -> bool {
