@@ -203,13 +203,14 @@ def browser(chromium: Any) -> Iterator[Any]:
 
 @pytest.fixture(scope="module")
 def town(once: Once) -> Path:
-    """A folder with the log of a minute of the town and the report on it."""
+    """A folder with the log of a minute of the town, what the run said, and the report on it."""
 
     def fill(folder: Path) -> None:
         config = NETS / "town" / "town.sumocfg"
         words = ("--end", "60", "--log-clips", "serious")
         done = closecall("run", config, *words, "--out", folder / "log", "--", "--no-warnings")
         assert done.returncode == 0, done.stderr
+        (folder / "said").write_text(done.stdout)
         made = closecall("report", folder / "log", "-o", folder / "report.html")
         assert made.returncode == 0, made.stderr
 

@@ -112,6 +112,9 @@ def test_every_interface_of_libsumo_gives_the_same_states(scene: str, end: int, 
     assert [run["getters"] for run in (of_older, through_python)] == ["libsumo", "python"]
     assert logged(tmp_path / "compiled") == logged(tmp_path / "older") == logged(tmp_path / "python")
     assert compiled["calls"] == of_older["calls"]
+    # A vehicle is removed at the end, where one is left; then its id is unknown.
+    assert compiled["taken"] == of_older["taken"] == through_python["taken"]
+    assert compiled["taken"] or scene in ("bridge", "pedestrian")
     assert logged(tmp_path / "compiled")[1].count(b"\n") > 1
     assert scene == "bridge" or compiled["steps"]["person"] > 0
     assert (compiled["rides"] > 0) == (scene == "crowd")
@@ -174,12 +177,6 @@ def test_python_getters_decide_where_compiled_ones_disagree(tmp_path: Path) -> N
     assert "its C++ functions and Python's differ" in line
     checked("pedestrian", 60, tmp_path / "same")
     assert logged(tmp_path / "turned") != logged(tmp_path / "same")
-
-
-def test_a_removed_vehicle_is_absent_through_every_interface(tmp_path: Path) -> None:
-    for change in ("none", "older", "nowhere"):
-        assert checked("reckless", 30, tmp_path / change, change)["taken"]
-    assert logged(tmp_path / "none") == logged(tmp_path / "older") == logged(tmp_path / "nowhere")
 
 
 @needs_compiled

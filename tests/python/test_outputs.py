@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Callable, NamedTuple
 
 import pytest
-from conftest import NETS, closecall, closecall_apart, parked, rows
+from conftest import NETS, closecall, parked, rows
 
 Copy = Callable[[str], Path]
 
@@ -157,7 +157,8 @@ def test_a_file_that_cannot_be_written_is_named(option: str, scenario: Copy) -> 
     assert not (config.parent / "closecall-out").exists()
 
 
-def test_an_output_never_overwrites_an_input(scenario: Copy, tmp_path: Path) -> None:
+def test_an_output_never_overwrites_an_input(scenario: Copy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
     config = scenario("curves")
     routes = config.with_suffix(".rou.xml")
     before = routes.read_bytes()
@@ -177,7 +178,7 @@ def test_an_output_never_overwrites_an_input(scenario: Copy, tmp_path: Path) -> 
         ("--ssm-output", tmp_path / "one", "--trj-output", "one"),
     ]
     for others in refused:
-        done = closecall_apart(*words, *others, cwd=tmp_path)
+        done = closecall(*words, *others)
         assert (done.returncode, done.stderr) == (2, f"closecall: --ssm-output would be written over {others[-1]}\n")
     assert (routes.read_bytes(), recording.read_bytes()) == (before, recorded)
     assert not (tmp_path / "out").exists()

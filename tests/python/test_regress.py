@@ -21,7 +21,7 @@ from typing import Callable
 
 import psutil
 import pytest
-from conftest import NETS, TIMEOUT, begin, closecall, closecall_apart, is_alive, until, wait_for_rows
+from conftest import NETS, TIMEOUT, begin, closecall, is_alive, until, wait_for_rows
 
 Copy = Callable[[str], Path]
 
@@ -326,9 +326,10 @@ def test_progress_is_shown_on_a_terminal(blessed: Copy) -> None:
     assert b" of 12 runs, " in shown, shown
 
 
-def test_logs_are_kept_on_request(blessed: Copy, tmp_path: Path) -> None:
+def test_logs_are_kept_on_request(blessed: Copy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = blessed("side")
-    assert closecall_apart("regress", folder, "--out", "kept", cwd=tmp_path).returncode == 0
+    monkeypatch.chdir(tmp_path)
+    assert closecall("regress", folder, "--out", "kept").returncode == 0
     assert (tmp_path / "kept" / "side" / "seed-42" / "run.json").is_file()
     assert not (folder / "closecall-out").exists()
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Callable
 
 import pytest
-from conftest import begin, closecall, rows, wait_for_rows
+from conftest import NETS, Once, begin, closecall, rows, wait_for_rows
 from recordings import record, replay, same
 
 Copy = Callable[[str], Path]
@@ -24,14 +24,14 @@ STANDING = '<vehicle id="a" x="%s" y="1" angle="0" speed="0"/>'
 
 RECORDINGS = [
     ("reckless", "900", 30, "fcd.xml", ()),
-    ("reckless", "900", 30, "fcd.xml.gz", ()),
     ("reckless", "900", 30, "fcd.csv", ()),
     ("reckless", "900", 30, "fcd.parquet", ()),
     ("crowd", "1000", 10, "fcd.xml", ("--sublane",)),
     ("crowd", "1000", 10, "fcd.csv", ("--sublane",)),
 ]
-"""Scenario, end, number of conflicts exceeded, file, and options. The crowd has persons too, to which SUMO's CSV gives
-the columns of vehicles. All have left at the end, so that their routes are known."""
+"""Scenario, end, number of conflicts exceeded, file, and options. SUMO's own gzip has a test below. The crowd has
+persons too, to which SUMO's CSV gives the columns of vehicles. All have left at the end, so that their routes are
+known."""
 HALF = ("--scale", "0.5")
 """Half the traffic."""
 
@@ -243,12 +243,21 @@ def repeat(recording: Path, times: int, seconds: float) -> None:
     recording.write_text(head + "".join(later(number * seconds) for number in range(times)) + tail)
 
 
-def test_ctrl_c_ends_a_replay_cleanly(scenario: Copy, tmp_path: Path) -> None:
-    config = scenario("town")
-    recording = record(config, "fcd.xml", "--end", "25")
-    repeat(recording, 8, 25)
-    words = ("--quiet", "--net", config.with_suffix(".net.xml"), "--out", tmp_path / "out")
-    process = begin("replay", recording, *words)
+@pytest.fixture(scope="module")
+def long(once: Once) -> Path:
+    """A recording of the town that takes a while, with the net beside it."""
+
+    def fill(folder: Path) -> None:
+        for kind in ("sumocfg", "net.xml", "rou.xml", "add.xml"):
+            shutil.copy(NETS / "town" / f"town.{kind}", folder)
+        repeat(record(folder / "town.sumocfg", "fcd.xml", "--end", "25"), 8, 25)
+
+    return once("long", fill) / "fcd.xml"
+
+
+def test_ctrl_c_ends_a_replay_cleanly(long: Path, tmp_path: Path) -> None:
+    words = ("--quiet", "--net", long.with_name("town.net.xml"), "--out", tmp_path / "out")
+    process = begin("replay", long, *words)
     wait_for_rows(tmp_path / "out" / "conflicts.csv", process, 2)
     process.send_signal(signal.SIGINT)
     _, message = process.communicate(timeout=30)
@@ -261,13 +270,10 @@ def test_ctrl_c_ends_a_replay_cleanly(scenario: Copy, tmp_path: Path) -> None:
     )
 
 
-def test_ctrl_c_ends_several_replays_cleanly(scenario: Copy, tmp_path: Path) -> None:
-    config = scenario("town")
-    recording = record(config, "fcd.xml", "--end", "25")
-    repeat(recording, 8, 25)
-    copy = Path(shutil.copy(recording, tmp_path / "copy.xml"))
-    words = ("--quiet", "--net", config.with_suffix(".net.xml"), "--out", tmp_path / "out", "--workers", "2")
-    process = begin("replay", "--each", recording, copy, *words)
+def test_ctrl_c_ends_several_replays_cleanly(long: Path, tmp_path: Path) -> None:
+    copy = Path(shutil.copy(long, tmp_path / "copy.xml"))
+    words = ("--quiet", "--net", long.with_name("town.net.xml"), "--out", tmp_path / "out", "--workers", "2")
+    process = begin("replay", "--each", long, copy, *words)
     for name in ("fcd", "copy"):
         wait_for_rows(tmp_path / "out" / name / "conflicts.csv", process, 2)
     process.send_signal(signal.SIGINT)

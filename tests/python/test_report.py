@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Callable
 
 import pytest
-from conftest import NETS, Once, closecall, closecall_apart, counted, python, rows
+from conftest import NETS, Once, closecall, counted, python, rows
 from report_page import ALL, PALETTE, Opened, made_up, severe
 
 Copy = Callable[[str], Path]
@@ -199,7 +199,8 @@ def test_a_log_without_conflicts_is_good_news(browser: Any, tmp_path: Path) -> N
     assert opened.complaints == []
 
 
-def test_unusable_input_gets_one_clear_line(tmp_path: Path) -> None:
+def test_unusable_input_gets_one_clear_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
     log = made_up(tmp_path / "log", 2)
     (tmp_path / "empty").mkdir()
     bad = made_up(tmp_path / "bad", 2, gap="much")
@@ -219,7 +220,7 @@ def test_unusable_input_gets_one_clear_line(tmp_path: Path) -> None:
         ((log, "--from", "9", "--to", "3"), "--from 9 is after --to 3"),
         ((log, "--against", tmp_path / "gone"), "gone: No such file"),
     ):
-        done = closecall_apart("report", *words, cwd=tmp_path)
+        done = closecall("report", *words)
         assert (done.returncode, done.stderr.count("\n")) == (2, 1), (words, done.stderr)
         assert message in done.stderr, (words, done.stderr)
 

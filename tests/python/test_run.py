@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
 import signal
 import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Callable
 
 import pytest
-from conftest import begin, closecall, closecall_apart, python, rows, wait_for_rows
+from conftest import NETS, Once, begin, closecall, closecall_apart, python, rows, wait_for_rows
 
 CONFLICT_COLUMNS = (
     "id,ego,foe,kind,severity,nearness,consequence,artefact,begin,end,time,gap,mu,margin,clearance,ttc,drac,unavoidable,pet,"
@@ -64,22 +65,29 @@ def test_the_log_has_the_promised_columns_and_counts(scenario: Copy, tmp_path: P
     assert float(conflict["margin"]) == min(float(row["margin"]) for row in steps)
 
 
-def test_equal_input_gives_equal_bytes(scenario: Copy, tmp_path: Path) -> None:
-    config = scenario("reckless")
-    for out in ("first", "second"):
-        assert closecall("run", config, "--out", tmp_path / out).returncode == 0
-    first, second = ((tmp_path / out / "conflicts.csv").read_bytes() for out in ("first", "second"))
+@pytest.fixture(scope="module")
+def reckless(once: Once) -> Path:
+    """A folder with the log of the reckless drivers, what the run said, and the collisions that SUMO reported."""
+
+    def fill(folder: Path) -> None:
+        words = ("--out", folder / "log", "--", "--collision-output", folder / "collisions.xml")
+        done = closecall("run", NETS / "reckless" / "reckless.sumocfg", *words)
+        assert done.returncode == 0, done.stderr
+        (folder / "said").write_text(done.stdout)
+
+    return once("reckless", fill)
+
+
+def test_equal_input_gives_equal_bytes(reckless: Path, scenario: Copy, tmp_path: Path) -> None:
+    assert closecall("run", scenario("reckless"), "--out", tmp_path / "again").returncode == 0
+    first, second = ((log / "conflicts.csv").read_bytes() for log in (reckless / "log", tmp_path / "again"))
     assert first == second
     assert len(first.splitlines()) > 10
 
 
-def test_every_collision_that_sumo_reports_was_announced(scenario: Copy, tmp_path: Path) -> None:
-    config = scenario("reckless")
-    reported = tmp_path / "collisions.xml"
-    done = closecall("run", config, "--", "--collision-output", reported)
-    assert done.returncode == 0, done.stderr
-    found = rows(config.parent / "closecall-out" / "conflicts.csv")
-    collisions = ET.parse(reported).getroot().findall("collision")
+def test_every_collision_that_sumo_reports_was_announced(reckless: Path) -> None:
+    said, found = (reckless / "said").read_text(), rows(reckless / "log" / "conflicts.csv")
+    collisions = ET.parse(reckless / "collisions.xml").getroot().findall("collision")
     assert len(collisions) >= 3
     for collision in collisions:
         pair = {collision.get("collider"), collision.get("victim")}
@@ -89,11 +97,11 @@ def test_every_collision_that_sumo_reports_was_announced(scenario: Copy, tmp_pat
     pairs = {frozenset((collision.get("collider"), collision.get("victim"))) for collision in collisions}
     marked = [row for row in found if row["collision_sumo"] == "true"]
     assert {frozenset((row["ego"], row["foe"])) for row in marked} == pairs
-    summary = json.loads((config.parent / "closecall-out" / "run.json").read_text())["summary"]
+    summary = json.loads((reckless / "log" / "run.json").read_text())["summary"]
     assert summary["collisions_sumo"] == {"reported": len(pairs), "in_conflict": len(marked)}
     overlaps = [row for row in found if row["collision"] == "true" and not row["artefact"]]
-    assert f"{len(overlaps)} overlaps; SUMO counts " in done.stdout
-    assert "skipped" not in done.stdout and len(done.stdout.partition("\nconflicts ")[2].splitlines()) <= 10
+    assert f"{len(overlaps)} overlaps; SUMO counts " in said
+    assert "skipped" not in said and len(said.partition("\nconflicts ")[2].splitlines()) <= 10
 
 
 def test_typed_options_override_those_of_the_toml_file(scenario: Copy, tmp_path: Path) -> None:
@@ -238,7 +246,7 @@ def test_the_last_step_is_sumos_own(end: str, scenario: Copy, tmp_path: Path) ->
     assert sumos[-1] < float(end) <= sumos[-1] + 0.2 + 1e-9
 
 
-def test_a_killed_runs_log_is_a_prefix_of_the_whole(scenario: Copy, tmp_path: Path) -> None:
+def test_a_killed_runs_log_is_a_prefix_of_the_whole(scenario: Copy, town: Path, tmp_path: Path) -> None:
     config = scenario("town")
     process = begin("run", config, "--end", "60", "--out", tmp_path / "killed")
     log = tmp_path / "killed" / "conflicts.csv"
@@ -246,8 +254,8 @@ def test_a_killed_runs_log_is_a_prefix_of_the_whole(scenario: Copy, tmp_path: Pa
     os.kill(process.pid, signal.SIGKILL)
     process.communicate(timeout=60)
     killed = log.read_text()
-    assert closecall("run", config, "--end", "60", "--out", tmp_path / "whole").returncode == 0
-    assert (tmp_path / "whole" / "conflicts.csv").read_text().startswith(killed)
+    whole = Path(shutil.copytree(town / "log", tmp_path / "whole"))
+    assert (whole / "conflicts.csv").read_text().startswith(killed)
 
     # A kill may cut the last row short, but too rarely for a test: cut it here.
     log.write_text(killed.rstrip()[:-1])

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import NETS, Once, Row, begin, closecall, closecall_apart, is_one_message, python, rows, until
+from conftest import NETS, Once, Row, begin, closecall, is_one_message, python, rows, until
 
 LEFT_TURN = NETS / "left_turn" / "left_turn.sumocfg"
 VARIED = ("--vary", "step-length=0.5,1", "--vary", "threads=1,2", "--vary", "mu=minimal,paper")
@@ -130,7 +130,8 @@ def test_the_same_command_continues_a_study(tmp_path: Path) -> None:
     assert (tmp_path / "study.md").exists()
 
 
-def test_what_cannot_be_studied_gets_one_message(tmp_path: Path) -> None:
+def test_what_cannot_be_studied_gets_one_message(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
     for words, said in (
         ((tmp_path / "none.sumocfg",), "none.sumocfg: "),
         ((LEFT_TURN, "--vary", "scale=1,2"), "write sumo:scale"),
@@ -143,7 +144,7 @@ def test_what_cannot_be_studied_gets_one_message(tmp_path: Path) -> None:
         (("--seeds", "1-2"), "SCENARIO"),
         (("--epsilon", "1"), "need a SCENARIO"),
     ):
-        result = closecall_apart("study", *words, cwd=tmp_path)
+        result = closecall("study", *words)
         assert result.returncode == 2 and is_one_message(result.stderr), result.stderr
         assert said in result.stderr
     assert not list(tmp_path.iterdir())

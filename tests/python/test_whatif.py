@@ -95,15 +95,7 @@ def test_the_same_command_does_nothing_again(follower: Path) -> None:
     assert before == {path: path.stat().st_mtime_ns for path in (follower / "whatif" / "conflicts").rglob("*.parquet")}
 
 
-def test_another_folder_gives_the_same_bytes(follower: Path, tmp_path: Path) -> None:
-    other = closecall("whatif", follower / "log", "--rollouts", "6", "--out", tmp_path / "other", "--quiet")
-    assert other.returncode == 0, other.stderr
-    known = outcomes(follower / "whatif", "error")
-    found = outcomes(tmp_path / "other", "error")
-    assert len(found) == 6 and all(known[name] == text for name, text in found.items())
-
-
-def test_a_killed_whatif_goes_on_and_counts_nothing_twice(follower: Path, tmp_path: Path) -> None:
+def test_a_killed_whatif_ends_with_the_bytes_of_a_whole_one(follower: Path, tmp_path: Path) -> None:
     words = ("whatif", follower / "log", "--rollouts", "8", "--out", tmp_path / "killed", "--quiet")
     with begin(*words) as process:
         until(lambda: len(outcomes(tmp_path / "killed", "error")) >= 2)
