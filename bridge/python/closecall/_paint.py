@@ -14,21 +14,16 @@ import time
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-Point = tuple[float, float]
-Colour = tuple[int, int, int, int]
+from ._legend import Legend
+from ._shapes import ABOVE_VEHICLES, ROAD, Colour, Point, band, mixed, ring
 
 POLYGON_TYPE = "closecall"
 """The type of all polygons that are painted."""
 
 EDGE: Colour = (27, 31, 35, 255)
 """Of rings and lines: darker than the road."""
-PALE: Colour = (215, 219, 224, 255)
-"""The rings in the legend that stand for any severity."""
-
 RING_MARGIN = 2.0
 """The distance between a road user and its ring, in m."""
-CORNERS = 34
-"""The corners of a ring's side, as many as SUMO gives its own."""
 RING_OF_VIEW = 0.014
 """The least radius of a ring, as a share of the view's width."""
 LINE_OF_VIEW = 0.0015
@@ -37,24 +32,14 @@ THIN = 0.25
 """The width of a line and of the foe's ring, in m; the ego's ring is four times as wide."""
 LABEL_OF_VIEW = 0.02
 """How far above both rings the label is, as a share of the view's width."""
-ROAD: Colour = (70, 75, 81, 255)
-"""As in gui-settings.xml."""
 PATH_SHARE = {"ego": 0.6, "foe": 0.35}
 """The share of the severity's colour in that of a path; the rest is road. sumo-gui draws what is half transparent over
 its background, not over the road."""
 
 ON_ROAD = 50
 """The layer of paths: above lanes and junctions, below vehicles."""
-ABOVE_VEHICLES = 1000
-
 AROUND = 60.0
 """Half the width of the view at the begin, in m."""
-LEGEND_WIDTH = 0.13
-"""The width of the legend, as a share of the view's width."""
-LEGEND_ROW = 0.065
-"""The height of one of its rows, as a share of the view's height; other lengths in the legend are shares of a row."""
-LEGEND_MARGIN = 0.4
-LEGEND_RING = 0.28
 SHOWN_WITHIN = 1.0
 """How long sumo-gui may take to draw a new view, in s."""
 HALTS = 3.0
@@ -107,10 +92,10 @@ class Painter:
         self.label, self.own_view = label, own_view
         self.shown: dict[tuple[str, str], Shown] = {}
         self.former: dict[tuple[str, str], Colour] = {}
-        self.legend: list[tuple[Any, str]] = []
         self.halted: set[tuple[str, str]] = set()
         self.last_number = 0
         self.view = self._view()
+        self.legend = Legend(sumo, self.colours)
         self.first_view: Any = None
         self.is_at_traffic = False
         self.is_shown = False
@@ -130,15 +115,14 @@ class Painter:
             self._remove(self.shown.pop(key))
         for key, pair in now.items():
             if key not in self.shown:
-                self.shown[key] = self._new()
+                self.last_number += 1
+                self.shown[key] = Shown(self.last_number)
             self._draw(self.shown[key], pair, present)
 
     def clear(self) -> None:
         """Remove all that was painted."""
         self.paint([])
-        for domain, name in self.legend:
-            domain.remove(name)
-        self.legend = []
+        self.legend.clear()
 
     def halt(self, pairs: list[Pair], least: str) -> None:
         """Halt at each conflict that is this severe for the first time, in its view, until the user presses Enter."""
@@ -205,10 +189,6 @@ class Painter:
     def _look_at(self, place: Point) -> None:
         x, y = place
         self.sumo.gui.setBoundary(self.view, x - AROUND, y - AROUND, x + AROUND, y + AROUND)
-
-    def _new(self) -> Shown:
-        self.last_number += 1
-        return Shown(self.last_number)
 
     def _fill(self, pairs: list[Pair], present: dict[str, set[str]]) -> None:
         rank = list(self.colours)
@@ -316,61 +296,5 @@ class Painter:
         return f"closecall.{shown.number}.{name}"
 
     def _draw_legend(self) -> None:
-        """A panel in the upper left corner, wherever the view is: the rings of the severities, then ego's and foe's."""
-        if self.view is None or not self.own_view:
-            return
-        (left, low), (right, top) = self.sumo.gui.getBoundary(self.view)
-        row = LEGEND_ROW * (top - low)
-        entries = [*((text, colour, True) for text, colour in self.colours.items()), ("ego", PALE, True)]
-        entries.append(("foe", PALE, False))
-        x, y, width = left + LEGEND_MARGIN * row, top - LEGEND_MARGIN * row, LEGEND_WIDTH * (right - left)
-        bottom = y - (len(entries) + LEGEND_MARGIN) * row
-        self._legend_polygon("panel", [(x, y), (x + width, y), (x + width, bottom), (x, bottom)], ROAD, 1)
-        for number, (text, colour, is_thick) in enumerate(entries):
-            middle = x + 0.7 * row, y - (number + 0.5 + LEGEND_MARGIN / 2) * row
-            outer = LEGEND_RING * row
-            inner = outer * (0.55 if is_thick else 0.85)
-            self._legend_polygon(f"ring.{number}", ring(middle, inner, outer), colour, 2)
-            self._legend_text(number, text, (x + 0.6 * width, middle[1] + LEGEND_RING * row))
-
-    def _legend_polygon(self, name: str, shape: list[Point], colour: Colour, layer: int) -> None:
-        full, polygons = f"closecall.legend.{name}", self.sumo.polygon
-        if (polygons, full) in self.legend:
-            polygons.setShape(full, shape)
-        else:
-            polygons.add(full, shape, colour, True, "closecall.legend", ABOVE_VEHICLES + layer, 1.0)
-            self.legend.append((polygons, full))
-
-    def _legend_text(self, number: int, text: str, at: Point) -> None:
-        """The text of a point of interest, which has the colour of the panel itself."""
-        full, points = f"closecall.legend.{number}", self.sumo.poi
-        if (points, full) in self.legend:
-            points.setPosition(full, *at)
-        else:
-            points.add(full, *at, ROAD, text, ABOVE_VEHICLES + 3)
-            self.legend.append((points, full))
-
-
-def ring(middle: Point, inner: float, outer: float) -> list[Point]:
-    """The outline of a ring: its outer side, and back along its inner one."""
-    turns = [2.0 * math.pi * corner / CORNERS for corner in range(CORNERS + 1)]
-    side = [[(middle[0] + r * math.cos(a), middle[1] + r * math.sin(a)) for a in turns] for r in (outer, inner)]
-    return side[0] + side[1][::-1] if inner > 0.0 else side[0]
-
-
-def mixed(colour: Colour, other: Colour, share: float) -> Colour:
-    """A colour mixed with another."""
-    red, green, blue, alpha = (round(share * own + (1.0 - share) * rest) for own, rest in zip(colour, other))
-    return red, green, blue, alpha
-
-
-def band(path: list[Point], width: float) -> list[Point]:
-    """The outline of what a road user of this width covers whose front goes along a path."""
-    left, right = [], []
-    for place, (x, y) in enumerate(path):
-        (x0, y0), (x1, y1) = path[max(place - 1, 0)], path[min(place + 1, len(path) - 1)]
-        length = math.hypot(x1 - x0, y1 - y0) or 1.0
-        across = -(y1 - y0) / length * width / 2.0, (x1 - x0) / length * width / 2.0
-        left.append((x + across[0], y + across[1]))
-        right.append((x - across[0], y - across[1]))
-    return left + right[::-1]
+        if self.view is not None and self.own_view:
+            self.legend.draw(self.sumo.gui.getBoundary(self.view))

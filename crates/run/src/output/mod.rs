@@ -1,6 +1,7 @@
 //! What a run writes: its log, its record, and files for other tools.
 
 pub mod clips;
+mod context;
 mod csv_file;
 pub mod earlier_log;
 pub mod folder;

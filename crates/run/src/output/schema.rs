@@ -7,38 +7,25 @@
 use ecow::EcoString;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
+use super::context::path;
 use super::logged_measures::LoggedMeasures;
-use super::place::{edge_of, junction_of, on_lane};
+use super::place::{edge_of, junction_of};
 use super::value::Field;
-use crate::util::decimal;
 use closecall::detection::kind::{Kind, Severity};
 use closecall::detection::measures::headway::headway;
-use closecall::events::{Artefact, Conflict, Manoeuvre, Snapshot};
-use closecall::geometry::Point;
+use closecall::events::{Artefact, Conflict, Manoeuvre};
 use closecall::options::measures::{ChosenMeasure, Measures};
 use closecall::traffic::lane_change::LaneChangeReason;
-use closecall::traffic::net::Net;
-use closecall::traffic::roster::{ProfileIndex, Roster};
 use closecall::util::units::{
     Degree, Metre, MetrePerSecond, MetrePerSecondSquared, MetreSquaredPerSecondCubed, Probability, Radian, Ratio,
     Second, SecondSquared,
 };
 
+pub use super::context::Context;
 pub use super::value::{ColumnType, Value};
 
 /// A text that may be missing: it is empty then.
 pub(crate) type OptionalText = EcoString;
-
-/// What a conflict does not know itself: its number in the log, and the names behind its indices.
-#[derive(Clone, Copy, Debug)]
-pub struct Context<'a> {
-    /// 1, 2, 3, … in the order of the log.
-    pub number: u64,
-    /// The net, which knows the lane's id; none without one.
-    pub net: Option<&'a Net>,
-    /// The roster, which knows the names of the types.
-    pub roster: &'a Roster,
-}
 
 macro_rules! column {
     ($name:ident: $type:ty, $presence:ident, $($meaning:literal)+) => {
@@ -364,43 +351,6 @@ fn next_field<'a, T: Field>(
     cell(place).and_then(T::from_value).map_err(|why| format!("{}: {why}", column.name))
 }
 
-impl<'a> Context<'a> {
-    fn lane(&self, conflict: &Conflict) -> &'a str {
-        conflict.lane.zip(self.net).map_or("", |(lane, net)| net.lane_id(lane))
-    }
-
-    /// The lane of the ego (0) or the foe (1), and how far along it that is.
-    fn on_lane(&self, conflict: &Conflict, user: usize) -> Option<(&'a str, Metre)> {
-        let front = [&conflict.ego_snapshot, &conflict.foe_snapshot][user].front;
-        on_lane(self.net?, conflict.lanes[user], front)
-    }
-
-    /// The longitude and latitude of the conflict point.
-    fn degrees(&self, conflict: &Conflict) -> Option<[Degree; 2]> {
-        self.net?.degrees(Point::new(conflict.x, conflict.y))
-    }
-
-    fn type_name(&self, profile: ProfileIndex) -> EcoString {
-        self.roster.profile_at(profile).name.as_str().into()
-    }
-}
-
-/// The largest coordinate of a path, in m, that is written as 0.
-const HALF_A_CENTIMETRE: Metre = 0.005;
-
-/// The path of a snapshot as x y x y …, to the centimetre; without commas, so that its cell needs no quotes.
-fn path(snapshot: &Snapshot) -> String {
-    let mut text = String::new();
-    for value in snapshot.path.iter().flat_map(|point| [point.x, point.y]) {
-        if !text.is_empty() {
-            text.push(' ');
-        }
-        // What rounds to 0 has no sign: it would be that of rounding, which differs between machines.
-        decimal::push_fixed(&mut text, if value.abs() < HALF_A_CENTIMETRE { 0.0 } else { value }, 2);
-    }
-    text
-}
-
 /// Without the snapshots, and without what the run was not told to add.
 impl Serialize for LoggedConflict {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -482,13 +432,5 @@ mod tests {
     fn every_number_has_a_unit() {
         let is_number = |column: &&Column| column.column_type == ColumnType::Number;
         assert!(COLUMNS.iter().filter(is_number).all(|column| !column.unit().is_empty()));
-    }
-
-    #[test]
-    fn a_path_writes_what_rounds_to_nothing_without_a_sign() {
-        let points = [(-0.0, -4e-16), (-0.0049, -0.0051)].map(|(x, y)| Point::new(x, y));
-        let snapshot =
-            Snapshot { front: points[0], heading: 0.0, length: 0.0, width: 0.0, path: std::sync::Arc::new(points) };
-        assert_eq!(path(&snapshot), "0.00 0.00 0.00 -0.01");
     }
 }
