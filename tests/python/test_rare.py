@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -31,6 +32,13 @@ def test_each_repetition_has_its_conflicts_rolled_out(estimated: Path) -> None:
     assert (found["repetitions"], found["rolled_out"], found["roll_outs"]) == ("3", "9", "27")
     assert float(found["low"]) <= float(found["per_hour"]) <= float(found["high"])
     assert float(found["plain_hours"]) > float(found["hours"])
+
+
+def test_no_two_roll_outs_have_the_same_driver(estimated: Path) -> None:
+    texts = [path.read_text() for path in (estimated / "rare").glob("*/series/*_error-*/roll-out.json")]
+    drivers = [json.loads(text)["drivers"][0] for text in texts]
+    erred = [driver["response"] for driver in drivers if driver["from"] is not None]
+    assert len(drivers) == 27 and len(set(erred)) == len(erred) > 18
 
 
 def test_the_rate_is_proportional_to_the_share(estimated: Path, tmp_path: Path) -> None:

@@ -129,6 +129,7 @@ impl Answer {
                 injury += found.injury_probability.unwrap_or_default();
             }
         }
+        // Wilson's interval is one of independent draws; these are spread more evenly, so that it is wider than need be.
         let Share { value, low, high } = share(struck.len() as u64, rolled.len() as u64);
         let has_any = !rolled.is_empty();
         let responses = rolled.iter().filter_map(|run| {

@@ -1,4 +1,4 @@
-//! What is asked: whose error it is, which one, and from when on.
+//! What is asked: whose error it is, which one, and from when on; and the drivers that are drawn for it.
 
 use clap::ValueEnum;
 use strum::IntoStaticStr;
@@ -6,6 +6,9 @@ use strum::IntoStaticStr;
 use closecall::util::units::{Probability, Second};
 use closecall_run::run::roll_out::DriverError;
 use closecall_run::util::decimal::Written;
+
+/// What is added to response, deceleration and side from one roll-out to the next: 1/φ, 1/φ², 1/φ³ with φ⁴ = φ + 1.
+const STRIDES: [Probability; 3] = [0.819_172_513_396_164_5, 0.671_043_606_703_789_3, 0.549_700_477_901_970_3];
 
 /// Whose error it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, IntoStaticStr)]
@@ -86,11 +89,15 @@ impl Asked {
         )
     }
 
-    /// The driver of a conflict's roll-out; the same numbers give the same driver.
-    pub(super) fn draw(&self, conflict: u64, number: u32) -> DrawnDriver {
-        let mut random = fastrand::Rng::with_seed(u64::from(self.seed) << 32 | u64::from(number));
+    /// The driver of a conflict's roll-out in the run with this seed; the same numbers give the same driver.
+    ///
+    /// Roll-out n has the point frac(u + n α), with the u of its conflict drawn at random and α the [`STRIDES`]: the Kronecker
+    /// sequence R3 of Roberts (2018, The unreasonable effectiveness of quasirandom sequences). Each point alone is uniform, and
+    /// the first n are spread more evenly than n independent ones, for each n.
+    pub(super) fn draw(&self, run_seed: u32, conflict: u64, number: u32) -> DrawnDriver {
+        let mut random = fastrand::Rng::with_seed(u64::from(self.seed) << 32 | u64::from(run_seed));
         let mut random = fastrand::Rng::with_seed(random.u64(..) ^ conflict);
-        let [response, deceleration, side] = std::array::from_fn(|_| random.f64());
+        let [response, deceleration, side] = STRIDES.map(|stride| (random.f64() + f64::from(number) * stride).fract());
         let is_foe = match self.whose {
             Whose::Ego => false,
             Whose::Foe => true,
@@ -104,23 +111,48 @@ impl Asked {
 mod tests {
     use super::*;
 
+    const ASKED: Asked = Asked {
+        roll_outs: 0,
+        horizon: 8.0,
+        error: DriverError::Late,
+        whose: Whose::Drawn,
+        from: Onset::Open,
+        draws: Draws::Same,
+        seed: 1,
+    };
+
     #[test]
     fn the_same_numbers_draw_the_same_driver() {
-        let asked = Asked {
-            roll_outs: 0,
-            horizon: 8.0,
-            error: DriverError::Late,
-            whose: Whose::Drawn,
-            from: Onset::Open,
-            draws: Draws::Same,
-            seed: 1,
-        };
-        assert_eq!(asked.draw(7, 3), asked.draw(7, 3));
-        let all = (0..1000).map(|number| asked.draw(7, number)).collect::<Vec<_>>();
-        assert!(all.iter().filter(|drawn| drawn.is_foe).count().abs_diff(500) < 80);
-        let mean = all.iter().map(|drawn| drawn.response).sum::<f64>() / 1000.0;
-        assert!((mean - 0.5).abs() < 0.05, "{mean}");
-        assert_ne!(asked.draw(7, 3), asked.draw(8, 3));
-        assert_ne!(asked.draw(7, 3), Asked { seed: 2, ..asked }.draw(7, 3));
+        assert_eq!(ASKED.draw(1, 7, 3), ASKED.draw(1, 7, 3));
+        let other_seed = Asked { seed: 2, ..ASKED };
+        let others = [ASKED.draw(2, 7, 3), ASKED.draw(1, 8, 3), ASKED.draw(1, 7, 4), other_seed.draw(1, 7, 3)];
+        assert!(others.iter().all(|other| *other != ASKED.draw(1, 7, 3)));
+    }
+
+    #[test]
+    fn each_roll_out_alone_draws_any_driver_alike() {
+        for number in [0, 4, 99] {
+            let drawn = (0..1000).map(|conflict| ASKED.draw(1, conflict, number)).collect::<Vec<_>>();
+            assert!(drawn.iter().filter(|drawn| drawn.is_foe).count().abs_diff(500) < 80);
+            for value in [|drawn: &DrawnDriver| drawn.response, |drawn: &DrawnDriver| drawn.deceleration] {
+                let mean = drawn.iter().map(value).sum::<f64>() / 1000.0;
+                assert!((mean - 0.5).abs() < 0.05, "{mean}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_prefix_is_more_even_than_independent_draws() {
+        // Late and weak drivers: a triangle with an area of 0.32.
+        let is_hit = |drawn: &DrawnDriver| drawn.response - drawn.deceleration > 0.2;
+        for (count, times) in [(10, 1.2), (30, 1.3), (100, 2.0), (1000, 2.5)] {
+            let squares = (0..200).map(|conflict| {
+                let hits = (0..count).filter(|number| is_hit(&ASKED.draw(1, conflict, *number))).count();
+                (hits as f64 / f64::from(count) - 0.32).powi(2)
+            });
+            let error = (squares.sum::<f64>() / 200.0).sqrt();
+            let independent = (0.32 * 0.68 / f64::from(count)).sqrt();
+            assert!(error * times < independent, "{count} draws: {error}, independent ones {independent}");
+        }
     }
 }

@@ -211,7 +211,7 @@ impl WhatIf {
 
     /// The driver that errs in a roll-out.
     fn drawn_driver(&self, subject: &Subject, number: u32) -> ErringDriver {
-        let drawn = self.asked.draw(subject.conflict.id, number);
+        let drawn = self.asked.draw(self.scenario.seed, subject.conflict.id, number);
         let LoggedConflict { ego, foe, .. } = &subject.conflict;
         let baseline = self.baseline(subject);
         let is_person = |id: &str| baseline.is_some_and(|baseline| baseline.persons.iter().any(|person| person == id));
