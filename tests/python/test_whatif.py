@@ -156,6 +156,24 @@ def test_a_person_and_a_vehicle_are_rolled_out(tmp_path: Path) -> None:
         assert len(json.loads(text)["persons"]) == 1 and json.loads(text)["drivers"][0]["response"] > 0.0
 
 
+def test_states_and_whole_runs_end_in_the_same_contacts(tmp_path: Path) -> None:
+    log, config = tmp_path / "log", NETS / "left_turn" / "left_turn.sumocfg"
+    assert closecall("run", config, "--end", "100", "--out", log, "--quiet", "--", "--no-warnings").returncode == 0
+    for out, more in (("states", ()), ("exact", ("--exact",))):
+        words = ("--worst", "3", "--rollouts", "4", "--out", tmp_path / out, "--quiet", *more)
+        asked = closecall("whatif", log, *words)
+        assert asked.returncode == 0, asked.stderr
+    contacts = [
+        {name: json.loads(text)["contact"] for name, text in outcomes(tmp_path / out, "error").items()}
+        for out in ("states", "exact")
+    ]
+    drifts = {answer["conflict"]: float(answer["drift"]) for answer in answers(tmp_path / "states")}
+    assert all(float(answer["drift"]) == 0.0 for answer in answers(tmp_path / "exact"))
+    same = [name for name in contacts[0] if drifts[name.split("conflict-")[1].split("_")[0]] < 1e-6]
+    assert same and all(contacts[0][name] == contacts[1][name] for name in same)
+    assert len({contact is None for contact in contacts[1].values()}) == 2
+
+
 @pytest.mark.parametrize("error", ["gap", "signal"])
 def test_other_errors_run_too(follower: Path, tmp_path: Path, error: str) -> None:
     out = tmp_path / "whatif"
@@ -169,6 +187,7 @@ def test_what_cannot_be_rolled_out_is_one_line(follower: Path, tmp_path: Path) -
         (("7",), "has no conflict 7"),
         (("--driver", "nobody"), "neither a file nor one of attentive, distracted, crash-involved"),
         (("--rollouts", "0"), "0 is not in 1..=100000"),
+        (("--exact", "--draws", "new"), "with another seed from its beginning on, it is another run"),
     ]:
         refused = closecall("whatif", follower / "log", *words, "--out", tmp_path / "refused")
         assert refused.returncode == 2 and said in refused.stderr and is_one_message(refused.stderr), refused.stderr

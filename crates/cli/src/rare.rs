@@ -88,6 +88,7 @@ pub fn run(arguments: RareArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Res
             whose: Whose::Ego,
             from: Onset::Open,
             draws: Draws::Same,
+            is_exact: false,
             seed: 1,
         };
         let mut tools = Tools { save_configuration: sumo.save_configuration, preset: None, driver: None };

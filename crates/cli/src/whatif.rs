@@ -53,6 +53,10 @@ pub(crate) struct WhatIfArgs {
     /// What SUMO draws at random in a roll-out.
     #[arg(long, value_enum, default_value_t)]
     draws: Draws,
+    /// Simulate each roll-out from the run's beginning instead of from a saved state. Nothing drifts, but each takes as long as
+    /// the run up to there.
+    #[arg(long)]
+    exact: bool,
     /// How long a roll-out goes on after the conflict opened, in s.
     #[arg(long, value_name = "S", default_value_t = 8.0, value_parser = duration)]
     horizon: Second,
@@ -94,6 +98,9 @@ pub fn run(arguments: &WhatIfArgs, known: &[String], sumo: Option<Sumo>) -> Resu
             found => conflicts.push(found?),
         }
     }
+    if arguments.exact && arguments.draws == Draws::New {
+        return Err(value("--exact with --draws new: with another seed from its beginning on, it is another run"));
+    }
     let (preset, driver) = drivers(arguments.driver.as_deref(), known)?;
     let asked = Asked {
         roll_outs: arguments.rollouts,
@@ -102,6 +109,7 @@ pub fn run(arguments: &WhatIfArgs, known: &[String], sumo: Option<Sumo>) -> Resu
         whose: arguments.whose,
         from: arguments.from,
         draws: arguments.draws,
+        is_exact: arguments.exact,
         seed: arguments.seed,
     };
     let _alone = LogFolder::claim(&out)?;

@@ -60,6 +60,8 @@ pub struct Asked {
     pub from: Onset,
     /// What SUMO draws.
     pub draws: Draws,
+    /// Whether each roll-out is simulated from the run's beginning instead of from a state.
+    pub is_exact: bool,
     /// The first seed: others give other roll-outs.
     pub seed: u32,
 }
@@ -79,13 +81,14 @@ impl Asked {
     /// In a line.
     pub fn in_words(&self) -> String {
         format!(
-            "{} roll-outs of {} s each, error: {}, whose: {}, from: {}, draws: {}",
+            "{} roll-outs of {} s each, error: {}, whose: {}, from: {}, draws: {}{}",
             self.roll_outs,
             Written(self.horizon),
             <&str>::from(self.error),
             <&str>::from(self.whose),
             <&str>::from(self.from),
-            <&str>::from(self.draws)
+            <&str>::from(self.draws),
+            if self.is_exact { ", each simulated from the run's beginning" } else { "" }
         )
     }
 
@@ -118,6 +121,7 @@ mod tests {
         whose: Whose::Drawn,
         from: Onset::Open,
         draws: Draws::Same,
+        is_exact: false,
         seed: 1,
     };
 

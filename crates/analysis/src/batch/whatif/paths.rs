@@ -36,10 +36,11 @@ pub(super) fn nearest<'a>(
     subject: &Subject,
     original: &Task,
     tasks: impl Iterator<Item = &'a Task>,
+    is_exact: bool,
 ) -> Result<std::result::Result<Baseline, String>> {
     let mut best = Err("its baselines failed".to_owned());
     for (start, task) in tasks.enumerate() {
-        match (baseline(subject, start, original, task)?, &best) {
+        match (baseline(subject, start, original, task, is_exact)?, &best) {
             (Ok(found), Ok(Baseline { drift, .. })) if found.drift >= *drift => {}
             (Ok(found), _) => best = Ok(found),
             (Err(why), Err(_)) => best = Err(why),
@@ -55,6 +56,7 @@ fn baseline(
     start: usize,
     original: &Task,
     task: &Task,
+    is_exact: bool,
 ) -> Result<std::result::Result<Baseline, String>> {
     if !original.file().exists() || !task.file().exists() {
         return Ok(Err("its baselines failed".to_owned()));
@@ -68,8 +70,13 @@ fn baseline(
     let drift = [&there.ego, &there.foe].into_iter().map(|id| distance(of_run.paths.get(&**id), own.paths.get(&**id)));
     let drift = drift.fold(0.0, f64::max);
     let Some(found) = find(&task.log(), wanted, SAME_CONFLICT)? else {
-        let why = format!("it does not happen in runs from SUMO's saved states, which drift by {drift:.1} m");
-        return Ok(Err(why));
+        return Ok(Err(if is_exact {
+            "it does not happen where SUMO removes no one that collided".to_owned()
+        } else {
+            format!(
+                "it does not happen in runs from SUMO's saved states, which drift by {drift:.1} m; --exact needs none"
+            )
+        }));
     };
     let series = task.beside().join(SERIES_FILES[0]);
     let steps = probabilities(&series, found.id)?;

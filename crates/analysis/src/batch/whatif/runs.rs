@@ -41,11 +41,11 @@ impl WhatIf {
         out: &Path,
         tools: &mut Tools,
     ) -> Result<Self> {
-        let scenario = Scenario::prepare(log, conflicts, asked.horizon, out.join("scenario"), tools)?;
+        let scenario = Scenario::prepare(log, conflicts, &asked, out.join("scenario"), tools)?;
         Ok(Self { asked, out: out.to_owned(), scenario, baselines: Vec::new() })
     }
 
-    /// The run that saves the states, in a data set of its own.
+    /// The run that saves the states, if any are needed, in a data set of its own.
     ///
     /// # Errors
     /// Those of [`Sweep::of_runs`].
@@ -58,21 +58,21 @@ impl WhatIf {
         let times = joined(states.iter().map(|(time, _)| time.to_string()));
         let files = joined(states.iter().map(|(_, file)| file.display().to_string()));
         let sumo = ["--save-state.times", &*times, "--save-state.files", &*files].into_iter().chain(WHOLE_STATE);
+        let sumo = sumo.filter(|_| !self.asked.is_exact);
         let roll_out = RollOut { watched, ..RollOut::default() };
-        let args = self.args(&self.scenario.whole(), self.scenario.seed, &roll_out, &[], sumo.map(str::to_owned))?;
+        let args = self.args(&self.scenario.whole(), self.scenario.seed, &roll_out, [], sumo.map(str::to_owned))?;
         let run = PlannedRun { name: page::ORIGINAL.to_owned(), args, labels: Vec::new() };
         Sweep::of_runs(vec![run], &self.out.join(page::ORIGINAL), &[self.scenario.settings()])
     }
 
-    /// The runs from the saved states in which no driver errs, once the original has ended.
+    /// The runs from each start in which no driver errs, once the original has ended.
     ///
     /// # Errors
     /// Those of [`Sweep::of_runs`].
     pub fn baselines(&self) -> Result<Sweep> {
         let runs = self.scenario.starts().map(|(subject, start, _)| {
             let roll_out = RollOut { watched: vec![watched(subject)], ..RollOut::default() };
-            let from = self.scenario.configuration(subject, start);
-            self.run(subject, &from, BASELINE, start as u32, self.scenario.seed, &roll_out)
+            self.run(subject, start, BASELINE, start as u32, self.scenario.seed, &roll_out)
         });
         self.sweep(runs.collect::<Result<_>>()?)
     }
@@ -85,7 +85,8 @@ impl WhatIf {
         let [original] = &self.original()?.tasks[..] else { return self.sweep(Vec::new()) };
         let baselines = self.baselines()?;
         let mut tasks = baselines.tasks.iter();
-        let own = |subject: &Subject| nearest(subject, original, tasks.by_ref().take(subject.periods.len()));
+        let is_exact = self.asked.is_exact;
+        let own = |subject: &Subject| nearest(subject, original, tasks.by_ref().take(subject.periods.len()), is_exact);
         self.baselines = self.scenario.subjects.iter().map(own).collect::<Result<_>>()?;
         let mut runs = Vec::new();
         for (subject, _) in self.that_happen() {
@@ -200,8 +201,7 @@ impl WhatIf {
             Draws::New => self.asked.seed.wrapping_add(number) % SEEDS,
         };
         let start = self.baseline(subject).map_or(0, |baseline| baseline.start);
-        let from = self.scenario.configuration(subject, start);
-        self.run(subject, &from, arm, number, seed, &roll_out)
+        self.run(subject, start, arm, number, seed, &roll_out)
     }
 
     /// The baseline of a subject; none where its conflict does not happen.
@@ -231,7 +231,7 @@ impl WhatIf {
     fn run(
         &self,
         subject: &Subject,
-        from: &Path,
+        start: usize,
         arm: &'static str,
         number: u32,
         seed: u32,
@@ -242,7 +242,10 @@ impl WhatIf {
             FILMED => &["--log-clips=caution"],
             _ => &[],
         };
-        let args = self.args(from, seed, roll_out, more, [])?;
+        // Nothing is logged before, as after a state.
+        let warm_up = self.asked.is_exact.then(|| format!("--warmup={}", subject.periods[start].warm_up_of_run));
+        let more = more.iter().copied().chain(warm_up.as_deref());
+        let args = self.args(&self.scenario.configuration(subject, start), seed, roll_out, more, [])?;
         let id = subject.conflict.id;
         let label = |name: &str, value| Label { name: name.to_owned(), value };
         let labels = vec![
@@ -254,12 +257,12 @@ impl WhatIf {
     }
 
     /// The words of `closecall run`.
-    fn args(
+    fn args<'a>(
         &self,
         configuration: &Path,
         seed: u32,
         roll_out: &RollOut,
-        more: &[&str],
+        more: impl IntoIterator<Item = &'a str>,
         sumo: impl IntoIterator<Item = String>,
     ) -> Result<Vec<String>> {
         let text = |path: &Path| {
@@ -269,7 +272,7 @@ impl WhatIf {
         let roll_out = serde_json::to_string(roll_out).map_err(|error| Error::Value(error.to_string()))?;
         let mut args = vec![text(configuration)?, format!("--config={}", text(&self.scenario.settings())?)];
         args.extend(["--threads=1".to_owned(), "--log-clips=none".to_owned(), format!("--seed={seed}")]);
-        args.extend(more.iter().map(|word| (*word).to_owned()));
+        args.extend(more.into_iter().map(str::to_owned));
         args.extend([format!("--roll-out={roll_out}"), "--".to_owned()]);
         args.extend(sumo);
         Ok(args)

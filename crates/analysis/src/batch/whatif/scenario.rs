@@ -1,10 +1,12 @@
-//! The scenario of the roll-outs: the run's own, gathered in a folder, with a configuration that begins before each conflict.
+//! The scenario of the roll-outs: the run's own, gathered in a folder, with a configuration for each conflict that begins before
+//! it, or with the run.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
+use super::asked::Asked;
 use crate::batch::extract::SaveConfiguration;
 use crate::batch::extract::configuration::{self, Configuration};
 use crate::batch::extract::source::{Period, check_can_be_run};
@@ -36,7 +38,7 @@ pub struct Tools<'a> {
     pub driver: Option<DriverOptions>,
 }
 
-/// A conflict and the parts of the run around it, each with a state of its own.
+/// A conflict and the parts of the run around it, each with a state of its own; a single one where no state is needed.
 #[derive(Clone, Debug)]
 pub(super) struct Subject {
     pub conflict: LoggedConflict,
@@ -57,7 +59,7 @@ impl Scenario {
     pub fn prepare(
         log: &Path,
         conflicts: Vec<LoggedConflict>,
-        horizon: Second,
+        asked: &Asked,
         folder: PathBuf,
         tools: &mut Tools,
     ) -> Result<Self> {
@@ -67,9 +69,11 @@ impl Scenario {
         let warm_up = run.options.get("warmup").and_then(Value::as_f64).unwrap_or_default();
         let first = run.summary.begin - warm_up + run.step_length.unwrap_or(1.0);
         let subject = |conflict: LoggedConflict| {
-            let around = |before| Period::around(&run, [conflict.begin, conflict.begin], [before, horizon]);
-            let periods = BEFORE.map(around).map(|period| Period { from: period.from.max(first), ..period });
-            let mut periods = Vec::from(periods);
+            let around = |before| Period::around(&run, [conflict.begin, conflict.begin], [before, asked.horizon]);
+            let before = if asked.is_exact { &BEFORE[..1] } else { &BEFORE };
+            let periods = before.iter().copied().map(around);
+            let mut periods =
+                periods.map(|period| Period { from: period.from.max(first), ..period }).collect::<Vec<_>>();
             periods.dedup_by(|a, b| a.from.total_cmp(&b.from).is_eq());
             Subject { conflict, periods }
         };
@@ -78,19 +82,20 @@ impl Scenario {
         let inputs = run.inputs.iter().map(|input| &input.sha256).collect::<Vec<_>>();
         let periods = scenario.starts().map(|(subject, _, period)| (subject.conflict.id, period.from, period.end));
         let periods = periods.collect::<Vec<_>>();
-        let made_of = json!({"words": run.sumo_words, "inputs": inputs, "options": options, "periods": periods});
+        let made_of = json!({"words": run.sumo_words, "inputs": inputs, "options": options, "periods": periods,
+            "exact": asked.is_exact});
         let made_of = made_of.to_string();
         let known = input_file::text(&scenario.folder.join(MADE_OF));
         if known.is_ok_and(|known| known == made_of) {
             return Ok(scenario);
         }
-        scenario.fill(&run, &options, tools)?;
+        scenario.fill(&run, &options, asked.is_exact, tools)?;
         output_file::write(&scenario.folder.join(MADE_OF), made_of.as_bytes())?;
         Ok(scenario)
     }
 
     /// Fills the folder anew.
-    fn fill(&self, run: &LoggedRun, options: &Value, tools: &mut Tools) -> Result<()> {
+    fn fill(&self, run: &LoggedRun, options: &Value, is_exact: bool, tools: &mut Tools) -> Result<()> {
         let place = &self.folder;
         let fault = |source| Error::file(place, source);
         if place.exists() {
@@ -108,13 +113,13 @@ impl Scenario {
         let last = self.starts().map(|(_, _, period)| period.end).fold(0.0, f64::max);
         whole.clone().with("end", last).write(&place.join(WHOLE))?;
         // Two that touch go on: what counts as a contact is for closecall to say, and SUMO removes none.
-        let short = whole.without("route-files").without("load-state").without("collision.");
-        let short = short.with("collision.action", "none");
+        let exact = whole.without("collision.").with("collision.action", "none");
+        let short = exact.clone().without("route-files").without("load-state");
         for (subject, start, period) in self.starts() {
-            let state = self.state(period);
-            let name = state.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let from_there = short.clone().with("load-state", name).with("begin", period.from);
-            from_there.with("end", period.end).write(&self.configuration(subject, start))?;
+            let name = self.state(period).file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let from_there = || short.clone().with("load-state", name).with("begin", period.from);
+            let own = if is_exact { exact.clone() } else { from_there() };
+            own.with("end", period.end).write(&self.configuration(subject, start))?;
         }
         Ok(())
     }
@@ -136,7 +141,7 @@ impl Scenario {
         self.folder.join(SETTINGS)
     }
 
-    /// The configuration that begins at one of a subject's starts.
+    /// The configuration of one of a subject's starts.
     pub fn configuration(&self, subject: &Subject, start: usize) -> PathBuf {
         self.folder.join(format!("conflict-{}-{start}.sumocfg", subject.conflict.id))
     }

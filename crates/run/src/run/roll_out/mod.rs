@@ -47,6 +47,9 @@ impl RollOutRun {
         let watched = self.asked.watched.iter().filter(is_now).flat_map(|watched| &watched.pair).collect::<Vec<_>>();
         if !watched.is_empty() {
             self.outcome.see(run, &watched);
+        } else if !self.asked.watched.is_empty() {
+            // What they did so far is as in the run.
+            return Vec::new();
         }
         for driver in self.lapsing.iter_mut().flat_map(|lapsing| lapsing.step(run)) {
             self.drivers.push(Steered::new(driver));
