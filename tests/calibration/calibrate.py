@@ -61,12 +61,19 @@ def rolled(scenario: Path, folder: Path, conflicts: int, rollouts: int) -> Itera
     if not ids:
         return
     words = ["--rollouts", str(rollouts), "--from", "worst", "--quiet", "--out", str(out)]
-    subprocess.run(["closecall", "whatif", log, *ids, *words], check=False)
+    status = subprocess.run(["closecall", "whatif", log, *ids, *words], check=False).returncode
+    ended = f"{scenario}: closecall whatif ended with {status}"
+    if status not in (0, 1):
+        raise SystemExit(ended)
     with (out / "whatif.csv").open() as file:
-        for row in csv.DictReader(file):
-            if int(row["roll_outs"]):
-                numbers = float(row["crash_probability"] or 0.0), int(row["contacts"]), int(row["roll_outs"])
-                yield Rolled(*numbers, row["manoeuvre"], row["remark"])
+        rows = list(csv.DictReader(file))
+    # 1 says that single roll-outs failed, which then are lost.
+    if status == 1 and not any(int(row["lost"]) for row in rows):
+        raise SystemExit(ended)
+    for row in rows:
+        if int(row["roll_outs"]):
+            numbers = float(row["crash_probability"] or 0.0), int(row["contacts"]), int(row["roll_outs"])
+            yield Rolled(*numbers, row["manoeuvre"], row["remark"])
 
 
 def brier(pairs: list[Rolled]) -> tuple[float, float, float, float]:

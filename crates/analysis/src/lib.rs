@@ -13,7 +13,7 @@
 //! | [`statistics`] | rates, quantiles, extremes, comparisons |
 //! | [`dataset`], [`variants`] | conflicts of many runs, grouped by settings |
 //! | [`report`], [`plot`], [`playback`] | the page, charts, clips as pictures |
-//! | [`export`] | files for other tools |
+//! | [`export`], [`rows_csv`] | files for other tools; tables |
 //! | [`batch`] | sweeps, regression tests, conflicts extracted as scenarios |
 //! | [`study`] | error against run time of a scenario |
 
@@ -26,6 +26,7 @@ pub mod logged;
 pub mod playback;
 pub mod plot;
 pub mod report;
+pub mod rows_csv;
 pub mod statistics;
 pub mod study;
 mod style;

@@ -10,13 +10,13 @@ use super::print::print;
 use super::run_progress::{RunProgress, Telling};
 use super::sumo::{Sumo, no_sumo};
 use super::sweep::{ParseRun, Passed, UNFINISHED, check_runs, distribute};
-use super::workers::Workers;
+use super::workers::{Workers, WorkersArgs};
 use closecall::options::{duration, share};
-use closecall::util::threads::processors;
 use closecall::util::units::Second;
 use closecall_analysis::batch::rare::{Repetition, estimate};
 use closecall_analysis::batch::sweep::{Seeds, Sweep, Task};
 use closecall_analysis::batch::whatif::{Asked, Draws, Onset, Tools, Whose};
+use closecall_analysis::rows_csv;
 use closecall_run::output::folder::LogFolder;
 use closecall_run::run::roll_out::DriverError;
 use closecall_run::util::input_file;
@@ -43,12 +43,8 @@ pub(crate) struct RareArgs {
     /// How long a roll-out goes on after the conflict opened, in s.
     #[arg(long, value_name = "S", default_value_t = 8.0, value_parser = duration)]
     horizon: Second,
-    /// Runs at the same time on this machine [default: one per processor].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    workers: Option<u16>,
-    /// Address of a Dask scheduler whose workers do the runs instead of this machine.
-    #[arg(long, value_name = "ADDRESS", conflicts_with = "workers")]
-    scheduler: Option<String>,
+    #[command(flatten)]
+    workers: WorkersArgs,
     #[command(flatten)]
     passed: Passed,
     /// Folder for the results [default: closecall-rare next to the scenario, or else in the working directory].
@@ -74,10 +70,7 @@ pub fn run(arguments: RareArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Res
     let base = Sweep::plan(&args, &passed.for_sumo, seeds, &[], &out.join("base"), &files)?;
     check_runs(&base, seeds, parse_run)?;
     let _alone = LogFolder::claim(&out)?;
-    let workers = match &arguments.scheduler {
-        Some(address) => Workers::Scheduler(address.clone()),
-        None => Workers::Local(arguments.workers.map_or_else(processors, usize::from)),
-    };
+    let workers = arguments.workers.workers();
     let mut failed = all(&mut sumo, &workers, base.missing()?, &out, *quiet)?;
     let mut repetitions = Vec::new();
     for task in base.tasks.iter().filter(|task| task.file().exists()) {
@@ -110,7 +103,7 @@ pub fn run(arguments: RareArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Res
     }
     let rate = estimate(&repetitions, arguments.share, cpu)?;
     let table = out.join(TABLE);
-    rate.write(&table)?;
+    rows_csv::write(&table, std::slice::from_ref(&rate))?;
     if !quiet {
         print(format_args!("{}\nMore is in {}\n", rate.in_words(), table.display()))?;
     }

@@ -13,8 +13,7 @@ use super::print::{print, value};
 use super::run::{RunArgs, request};
 use super::run_progress::{RunProgress, Telling};
 use super::sumo::{Sumo, no_sumo};
-use super::workers::Workers;
-use closecall::util::threads::processors;
+use super::workers::{Workers, WorkersArgs};
 use closecall::util::units::counted;
 use closecall_analysis::batch::sweep::{Seeds, Sweep, Task, Vary};
 use closecall_run::Error as RunError;
@@ -35,12 +34,8 @@ pub(crate) struct SweepArgs {
     /// Values of an option of closecall run, or of SUMO (sumo:NAME=A,B), one run each. If repeated, every combination is run.
     #[arg(long, value_name = "NAME=A,B,…", action = clap::ArgAction::Append)]
     vary: Vec<Vary>,
-    /// Runs at the same time on this machine [default: one per processor].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    workers: Option<u16>,
-    /// Address of a Dask scheduler whose workers do the runs instead of this machine.
-    #[arg(long, value_name = "ADDRESS", conflicts_with = "workers")]
-    scheduler: Option<String>,
+    #[command(flatten)]
+    workers: WorkersArgs,
     /// Print the runs as CSV instead of doing them: the number of each, its name, and whether it is done.
     #[arg(long, conflicts_with_all = ["task", "workers", "scheduler"])]
     list: bool,
@@ -206,10 +201,7 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Re
     let _alone = LogFolder::claim(if arguments.task.is_some() { &unfinished } else { &out })?;
     let missing = plan.missing()?;
     let done = plan.tasks.len() - missing.len();
-    let workers = match arguments.scheduler {
-        Some(address) => Workers::Scheduler(address),
-        None => Workers::Local(arguments.workers.map_or_else(processors, usize::from)),
-    };
+    let workers = arguments.workers.workers();
     let telling = if arguments.quiet { Telling::Nothing } else { Telling::Progress };
     let progress = RunProgress::new(&missing, done, workers.at_once(), None, telling);
     let failed = distribute(&mut sumo, &workers, &missing, progress, &unfinished)?;

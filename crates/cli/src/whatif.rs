@@ -10,13 +10,12 @@ use super::print::{print, value};
 use super::run_progress::{RunProgress, Telling};
 use super::sumo::{Sumo, no_sumo};
 use super::sweep::{UNFINISHED, distribute};
-use super::workers::Workers;
+use super::workers::{Workers, WorkersArgs};
 use closecall::options::{DriverModel, DriverOptions, duration};
-use closecall::util::threads::processors;
 use closecall::util::units::Second;
 use closecall_analysis::batch::sweep::Sweep;
 use closecall_analysis::batch::whatif::{Asked, Draws, Onset, Tools, WhatIf, Whose};
-use closecall_analysis::logged::ConflictSelector;
+use closecall_analysis::logged::{with_ids, worst};
 use closecall_run::RunOptions;
 use closecall_run::options::OptionsFile;
 use closecall_run::output::folder::LogFolder;
@@ -63,12 +62,8 @@ pub(crate) struct WhatIfArgs {
     /// Another number gives other roll-outs.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u32,
-    /// Roll-outs at the same time on this machine [default: one per processor].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    workers: Option<u16>,
-    /// Address of a Dask scheduler whose workers do the roll-outs instead of this machine.
-    #[arg(long, value_name = "ADDRESS", conflicts_with = "workers")]
-    scheduler: Option<String>,
+    #[command(flatten)]
+    workers: WorkersArgs,
     /// Folder for the results [default: closecall-whatif beside the log, or else in the working directory].
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -85,19 +80,7 @@ pub fn run(arguments: &WhatIfArgs, known: &[String], sumo: Option<Sumo>) -> Resu
     let Some(mut sumo) = sumo else { return no_sumo().map(|()| 0) };
     let WhatIfArgs { log, ids, worst, quiet, .. } = arguments;
     let out = absolute(arguments.out.as_deref().unwrap_or(&default_folder(log, RESULTS)))?;
-    let which = if ids.is_empty() {
-        (1..=usize::from(*worst)).map(ConflictSelector::Worst).collect::<Vec<_>>()
-    } else {
-        ids.iter().copied().map(ConflictSelector::Id).collect()
-    };
-    let mut conflicts = Vec::with_capacity(which.len());
-    for selector in which {
-        match selector.find(log) {
-            // A log may have fewer conflicts than the default.
-            Err(closecall_analysis::Error::NoWorst(..)) if !conflicts.is_empty() => break,
-            found => conflicts.push(found?),
-        }
-    }
+    let conflicts = if ids.is_empty() { worst(log, usize::from(*worst))? } else { with_ids(log, ids)? };
     if arguments.exact && arguments.draws == Draws::New {
         return Err(value("--exact with --draws new: with another seed from its beginning on, it is another run"));
     }
@@ -116,10 +99,7 @@ pub fn run(arguments: &WhatIfArgs, known: &[String], sumo: Option<Sumo>) -> Resu
     let mut tools = Tools { save_configuration: sumo.save_configuration, preset, driver };
     let mut whatif = WhatIf::prepare(log, conflicts, asked, &out, &mut tools)?;
     sumo.save_configuration = tools.save_configuration;
-    let workers = match &arguments.scheduler {
-        Some(address) => Workers::Scheduler(address.clone()),
-        None => Workers::Local(arguments.workers.map_or_else(processors, usize::from)),
-    };
+    let workers = arguments.workers.workers();
     let mut run = |sweep: &Sweep, telling| all(&mut sumo, &workers, sweep, &out, telling, *quiet);
     run(&whatif.original()?, Telling::Nothing)?;
     run(&whatif.baselines()?, Telling::Nothing)?;

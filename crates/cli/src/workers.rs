@@ -2,8 +2,32 @@
 
 use std::path::Path;
 
+use clap::Args;
+
+use closecall::util::threads::processors;
 use closecall_analysis::batch::sweep::Task;
 use closecall_run::Result;
+
+/// Which workers do the runs.
+#[derive(Args)]
+pub(crate) struct WorkersArgs {
+    /// Runs at the same time on this machine [default: one per processor].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    workers: Option<u16>,
+    /// Address of a Dask scheduler whose workers do the runs instead of this machine.
+    #[arg(long, value_name = "ADDRESS", conflicts_with = "workers")]
+    scheduler: Option<String>,
+}
+
+impl WorkersArgs {
+    /// The workers that were asked for.
+    pub fn workers(&self) -> Workers {
+        match &self.scheduler {
+            Some(address) => Workers::Scheduler(address.clone()),
+            None => Workers::Local(self.workers.map_or_else(processors, usize::from)),
+        }
+    }
+}
 
 /// The workers that do the runs of a sweep.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -30,9 +30,10 @@ mod volume;
 
 use std::path::Path;
 
+use closecall_analysis::rows_csv;
 use closecall_analysis::study::error_over_time;
 use closecall_analysis::study::pareto::is_on_front;
-use closecall_run::util::output_file::{self, OutputFile};
+use closecall_run::util::output_file;
 use closecall_run::{Error, Result};
 
 pub use measurement::{Axis, Measurement, Plan, Recorder};
@@ -73,14 +74,7 @@ pub fn measure(axis: Axis, plan: &Plan, record: Option<&mut Recorder>) -> Result
 /// # Errors
 /// An error that names the file that cannot be written.
 pub fn write(folder: &Path, rows: &[Measurement], plan: &Plan) -> closecall_analysis::Result<()> {
-    let path = folder.join("study.csv");
-    let failed = |error: csv::Error| Error::content(&path, error.to_string());
-    let mut table = OutputFile::create(&path)?;
-    let mut writer = csv::Writer::from_writer(&mut table);
-    rows.iter().try_for_each(|row| writer.serialize(row)).map_err(failed)?;
-    writer.flush().map_err(|source| Error::file(&path, source))?;
-    drop(writer);
-    table.finish()?;
+    rows_csv::write(&folder.join("study.csv"), rows)?;
     for axis in Axis::ALL {
         let of_axis = rows.iter().filter(|row| row.axis == axis).cloned().collect::<Vec<_>>();
         // Shares of intervals that hold the truth are a table.

@@ -15,7 +15,7 @@ mod reader;
 mod reading;
 mod run;
 
-pub use conflict_selector::ConflictSelector;
+pub use conflict_selector::{ConflictSelector, with_ids, worst};
 pub use folders::{PARQUET, SUMMARY, check_keeps_logs, log_folders};
 pub use pack::{Label, LabelValue, pack, pack_in_place};
 pub use packed::{Packed, RunTime};

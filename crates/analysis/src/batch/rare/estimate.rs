@@ -1,7 +1,5 @@
 //! The crash rate that repetitions estimate.
 
-use std::path::Path;
-
 use serde::Serialize;
 
 use super::choice::Repetition;
@@ -10,7 +8,6 @@ use crate::statistics::rate::rate;
 use crate::study::number::number;
 use crate::{Error, Result};
 use closecall::util::units::Probability;
-use closecall_run::util::output_file::OutputFile;
 
 /// Of the weight of the chosen conflicts, at most this share may have no roll-outs.
 const MOST_REFUSED: f64 = 0.2;
@@ -51,20 +48,6 @@ pub struct CrashRate {
 }
 
 impl CrashRate {
-    /// Writes it as a table with one row.
-    ///
-    /// # Errors
-    /// [`File`](closecall_run::Error::File) that names it.
-    pub fn write(&self, path: &Path) -> Result<()> {
-        let failed = |error: csv::Error| Error::content(path, error.to_string());
-        let mut table = OutputFile::create(path)?;
-        let mut writer = csv::Writer::from_writer(&mut table);
-        writer.serialize(self).map_err(failed)?;
-        writer.flush().map_err(|source| Error::file(path, source))?;
-        drop(writer);
-        Ok(table.finish()?)
-    }
-
     /// What a reader wants to know first.
     pub fn in_words(&self) -> String {
         let Self { per_hour, low, high, share, conflicts_per_hour, contacts, roll_outs, plain_hours, gain, .. } = self;

@@ -7,11 +7,12 @@ use super::paths::Baseline;
 use crate::Result;
 use crate::logged::{ConflictReader, LoggedConflict};
 use crate::statistics::share::{Share, share};
-use closecall::util::units::{Metre, MetrePerSecond, Probability, Second};
+use closecall::util::units::{Metre, MetrePerSecond, Probability, Second, counted};
 use closecall_run::run::roll_out::Contact;
+use closecall_run::util::decimal::Written;
 
 /// What the roll-outs of a conflict say: a row of `whatif.csv`.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Answer {
     /// The conflict's id in the log.
     pub conflict: u64,
@@ -86,26 +87,8 @@ impl Answer {
             begin: of.begin,
             x: of.x,
             y: of.y,
-            roll_outs: 0,
-            lost: 0,
-            contacts: 0,
-            with_others: 0,
-            share: None,
-            low: None,
-            high: None,
-            crash_probability_at_opening: None,
-            crash_probability: None,
-            delta_v: None,
-            injury_probability: None,
-            critical_response: None,
-            shortest_with_contact: None,
-            longest_without: None,
-            prevented_by_other: 0,
-            tried_by_other: 0,
-            drift: None,
-            clip_with_contact: String::new(),
-            clip_without: String::new(),
             remark: why.to_owned(),
+            ..Self::default()
         }
     }
 
@@ -170,6 +153,35 @@ impl Answer {
             clip_without: clip(false),
             ..Self::refused(of, &remark)
         })
+    }
+
+    /// What a reader wants to know first.
+    pub fn in_words(&self) -> String {
+        let Self { conflict, kind, begin, ego, foe, .. } = self;
+        let mut text = format!("conflict {conflict} ({kind}, {ego} and {foe}, {} s): ", Written(*begin));
+        let (Some(share), Some(low), Some(high)) = (self.share, self.low, self.high) else {
+            return text + if self.remark.is_empty() { "no roll-out ended" } else { &self.remark };
+        };
+        let per_cent = |share: f64| format!("{:.0}", 100.0 * share);
+        let all = counted(self.roll_outs, "roll-out");
+        text += &format!("contact in {} of {all}, {} %", self.contacts, per_cent(share));
+        text += &format!(" ({}–{} %)", per_cent(low), per_cent(high));
+        if let Some(formula) = self.crash_probability_at_opening {
+            text += &format!("; by the formula {} %", per_cent(formula));
+        }
+        if let Some(response) = self.critical_response {
+            text += &format!("; from a response time of {response:.1} s on");
+        }
+        if self.tried_by_other > 0 {
+            text += &format!("; the other prevents {} of {}", self.prevented_by_other, self.tried_by_other);
+        }
+        if self.lost > 0 {
+            text += &format!("; {} lost", counted(self.lost, "roll-out"));
+        }
+        if !self.remark.is_empty() {
+            text += &format!("; {}", self.remark);
+        }
+        text
     }
 }
 

@@ -13,7 +13,6 @@ mod page;
 mod paths;
 mod runs;
 mod scenario;
-mod table;
 
 pub use answer::Answer;
 pub use asked::{Asked, Draws, Onset, Whose};

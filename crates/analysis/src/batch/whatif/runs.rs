@@ -11,7 +11,7 @@ use super::scenario::{Scenario, Subject, Tools};
 use crate::batch::extract::WHOLE_STATE;
 use crate::batch::sweep::{PlannedRun, Sweep};
 use crate::logged::{Label, LabelValue, LoggedConflict};
-use crate::{Error, Result};
+use crate::{Error, Result, rows_csv};
 use closecall_run::run::roll_out::{DriverError, ErringDriver, Outcome, ROLL_OUT, RollOut, Watched};
 
 /// SUMO's seeds are below this.
@@ -156,7 +156,7 @@ impl WhatIf {
     /// Those of reading the runs and of writing the files.
     pub fn write(&self, answers: &[Answer]) -> Result<[PathBuf; 2]> {
         let files = [page::TABLE, page::PAGE].map(|name| self.out.join(name));
-        Answer::write(answers, &files[0])?;
+        rows_csv::write(&files[0], answers)?;
         page::write(&self.out, &self.asked.in_words())?;
         Ok(files)
     }
