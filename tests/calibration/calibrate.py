@@ -1,6 +1,6 @@
-"""Does crash_probability say what roll-outs say? The tables of docs/whatif.md.
+"""Does crash_probability say what roll-outs say? The tables and the picture of docs/whatif.md.
 
-python tests/calibration/calibrate.py FOLDER SCENARIO… [--conflicts N] [--rollouts N]
+python tests/calibration/calibrate.py FOLDER SCENARIO… [--conflicts N] [--rollouts N] [--picture FILE.svg]
 
 Each scenario is run, conflicts are drawn evenly over the range of their crash probabilities, and rolled out from the
 moment at which the probability is highest. What was done already is not done again.
@@ -52,15 +52,15 @@ def bin_of(probability: float) -> int:
     return next(number for number, limit in enumerate(BINS[1:]) if probability < limit)
 
 
-def rolled(scenario: Path, folder: Path, conflicts: int, rollouts: int) -> Iterable[Rolled]:
+def rolled(scenario: Path, asked: argparse.Namespace) -> Iterable[Rolled]:
     """The conflicts of a scenario that happen in their baselines."""
-    log, out = folder / scenario.stem / "log", folder / scenario.stem / "whatif"
+    log, out = asked.folder / scenario.stem / "log", asked.folder / scenario.stem / "whatif"
     if not (log / "run.json").exists():
         subprocess.run(["closecall", "run", scenario, "--quiet", "--out", log, "--", "--no-warnings"], check=True)
-    ids = chosen(log, conflicts)
+    ids = chosen(log, asked.conflicts)
     if not ids:
         return
-    words = ["--rollouts", str(rollouts), "--from", "worst", "--quiet", "--out", str(out)]
+    words = ["--rollouts", str(asked.rollouts), "--from", "worst", "--quiet", "--out", str(out)]
     status = subprocess.run(["closecall", "whatif", log, *ids, *words], check=False).returncode
     ended = f"{scenario}: closecall whatif ended with {status}"
     if status not in (0, 1):
@@ -113,11 +113,15 @@ def mean(pairs: list[Rolled]) -> float:
     return sum(one.share for one in pairs) / len(pairs)
 
 
+def said(pairs: list[Rolled]) -> float:
+    """The mean of the formula."""
+    return sum(one.formula for one in pairs) / len(pairs)
+
+
 def line(name: str, pairs: list[Rolled]) -> str:
     """A row of a table: conflicts, the mean formula, the mean share with its interval."""
     low, high = interval(pairs)
-    said = sum(one.formula for one in pairs) / len(pairs)
-    return f"| {name} | {len(pairs)} | {said:.2f} | {mean(pairs):.2f} ({low:.2f}–{high:.2f}) |"
+    return f"| {name} | {len(pairs)} | {said(pairs):.2f} | {mean(pairs):.2f} ({low:.2f}–{high:.2f}) |"
 
 
 def main() -> None:
@@ -127,8 +131,9 @@ def main() -> None:
     parser.add_argument("scenarios", type=Path, nargs="+")
     parser.add_argument("--conflicts", type=int, default=24)
     parser.add_argument("--rollouts", type=int, default=20)
+    parser.add_argument("--picture", type=Path)
     asked = parser.parse_args()
-    by_net = {path.stem: list(rolled(path, asked.folder, asked.conflicts, asked.rollouts)) for path in asked.scenarios}
+    by_net = {path.stem: list(rolled(path, asked)) for path in asked.scenarios}
     pairs = [one for of_net in by_net.values() for one in of_net]
     print("| crash probability | conflicts | formula | roll-outs |\n|---|---|---|---|")
     for number, of_bin in binned(pairs).items():
@@ -143,6 +148,12 @@ def main() -> None:
     for name, of_net in by_net.items():
         if of_net:
             print(line(name, of_net))
+    if asked.picture:
+        # matplotlib is not needed for the tables.
+        from diagram import Point, draw
+
+        bins = binned(pairs).values()
+        draw([Point(said(one), mean(one), *interval(one), len(one)) for one in bins], asked.picture)
     score, reliability, resolution, uncertainty = brier(pairs)
     parts = f"reliability {reliability:.3f} − resolution {resolution:.3f} + uncertainty {uncertainty:.3f}"
     print(f"\nBrier {score:.3f} = {parts}")
