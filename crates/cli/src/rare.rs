@@ -15,10 +15,9 @@ use closecall::options::{duration, share};
 use closecall::util::units::Second;
 use closecall_analysis::batch::rare::{Repetition, estimate};
 use closecall_analysis::batch::sweep::{Seeds, Sweep, Task};
-use closecall_analysis::batch::whatif::{Asked, Draws, Onset, Tools, Whose};
+use closecall_analysis::batch::whatif::{Asked, Tools};
 use closecall_analysis::rows_csv;
 use closecall_run::output::folder::LogFolder;
-use closecall_run::run::roll_out::DriverError;
 use closecall_run::util::input_file;
 
 /// A scenario, and how much to simulate of it.
@@ -74,16 +73,7 @@ pub fn run(arguments: RareArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Res
     let mut failed = all(&mut sumo, &workers, base.missing()?, &out, *quiet)?;
     let mut repetitions = Vec::new();
     for task in base.tasks.iter().filter(|task| task.file().exists()) {
-        let asked = Asked {
-            roll_outs: arguments.rollouts,
-            horizon: arguments.horizon,
-            error: DriverError::Late,
-            whose: Whose::Ego,
-            from: Onset::Open,
-            draws: Draws::Same,
-            is_exact: false,
-            seed: 1,
-        };
+        let asked = Asked { roll_outs: arguments.rollouts, horizon: arguments.horizon, seed: 1, ..Asked::default() };
         let mut tools = Tools { save_configuration: sumo.save_configuration, preset: None, driver: None };
         let count = usize::from(arguments.conflicts);
         repetitions.push(Repetition::prepare(task, count, asked, &out.join(&task.name), &mut tools)?);

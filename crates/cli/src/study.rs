@@ -5,15 +5,25 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::error::Result;
-use super::print::print;
+use super::print::{print, value};
 use super::study_scenario::{RESULTS, ScenarioArgs};
 use super::sumo::{RunRequest, Sumo};
 use super::sweep::ParseRun;
-use closecall::util::units::Second;
-use closecall_run::RunOptions;
+use super::whatif::roll_out;
+use super::workers::Workers;
+use closecall::util::threads::processors;
+use closecall::util::units::{Second, counted};
+use closecall_analysis::batch::sweep::Task;
+use closecall_analysis::batch::whatif::{Asked, Tools, WhatIf};
+use closecall_analysis::logged::worst;
 use closecall_run::output::folder::LogFolder;
 use closecall_run::output::formats::OutputFiles;
-use closecall_study::{self, Axis, Plan};
+use closecall_run::run::roll_out::{Outcome, ROLL_OUT};
+use closecall_run::{Error as RunError, RunOptions};
+use closecall_study::{self, Axis, Plan, RolledOut, Simulator};
+
+/// How long a roll-out goes on after the conflict opened, in s: as in `closecall whatif`.
+const HORIZON: Second = 8.0;
 
 /// What to measure, and where to write it.
 #[derive(Args)]
@@ -59,12 +69,18 @@ fn own_choices(arguments: &StudyArgs, mut sumo: Option<Sumo>) -> Result<()> {
     for axis in Axis::ALL.into_iter().filter(|axis| arguments.only.is_none_or(|only| only == *axis)) {
         eprintln!("{} …", axis.name());
         let measured = match &mut sumo {
+            Some(sumo) if axis == Axis::RollOuts => {
+                let mut roll_out = |scenario: &Path, end: Second, count: u32| {
+                    rolled_out(sumo, scenario, end, count).map_err(|error| RunError::Value(error.to_string()))
+                };
+                closecall_study::measure(axis, &plan, Some(Simulator::RollOut(&mut roll_out)))?
+            }
             Some(sumo) => {
                 let mut record = |scenario: &Path, recording: &Path, end: Second| {
                     let request = recorded(scenario, recording, end);
                     (sumo.simulate)(&request, LogFolder::claim(&request.out)?).map(|_| ())
                 };
-                closecall_study::measure(axis, &plan, Some(&mut record))?
+                closecall_study::measure(axis, &plan, Some(Simulator::Record(&mut record)))?
             }
             None if axis.needs_sumo() && arguments.only.is_none() => {
                 eprintln!("skipped: this binary was built without Python and cannot run SUMO");
@@ -81,6 +97,30 @@ fn own_choices(arguments: &StudyArgs, mut sumo: Option<Sumo>) -> Result<()> {
         print(format_args!("off the Pareto front: {} {} ({})\n", row.axis.name(), row.method, row.parameter))?;
     }
     Ok(())
+}
+
+/// Runs a scenario and rolls out its worst conflict.
+fn rolled_out(sumo: &mut Sumo, scenario: &Path, end: Second, count: u32) -> Result<RolledOut> {
+    let request = recorded(scenario, &scenario.with_extension("fcd.xml"), end);
+    (sumo.simulate)(&request, LogFolder::claim(&request.out)?)?;
+    let conflicts = worst(&request.out, 1)?;
+    let begin = conflicts[0].begin;
+    let asked = Asked { roll_outs: count, horizon: HORIZON, seed: 1, ..Asked::default() };
+    let out = scenario.with_extension("whatif");
+    let mut tools = Tools { save_configuration: &mut *sumo.save_configuration, preset: None, driver: None };
+    let mut whatif = WhatIf::prepare(&request.out, conflicts, asked, &out, &mut tools)?;
+    let lost = roll_out(sumo, &Workers::Local(processors()), &mut whatif, &out, false)?;
+    if !lost.is_empty() {
+        return Err(value(format!("{} failed", counted(lost.len() as u64, "roll-out"))));
+    }
+    let before = [whatif.original()?, whatif.baselines()?];
+    let before = before.iter().flat_map(|sweep| &sweep.tasks).map(Task::processor_time).sum();
+    let tasks = whatif.roll_outs()?.tasks;
+    let outcome = |task: &Task| {
+        let outcome = Outcome::read(&task.beside().join(ROLL_OUT))?;
+        Ok((outcome.contact.is_some(), task.processor_time()))
+    };
+    Ok(RolledOut { begin, before, roll_outs: tasks.iter().map(outcome).collect::<Result<_>>()? })
 }
 
 /// A run of a scenario that records every step as fcd-output.

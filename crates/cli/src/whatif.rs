@@ -100,10 +100,8 @@ pub fn run(arguments: &WhatIfArgs, known: &[String], sumo: Option<Sumo>) -> Resu
     let mut whatif = WhatIf::prepare(log, conflicts, asked, &out, &mut tools)?;
     sumo.save_configuration = tools.save_configuration;
     let workers = arguments.workers.workers();
+    let lost = roll_out(&mut sumo, &workers, &mut whatif, &out, *quiet)?;
     let mut run = |sweep: &Sweep, telling| all(&mut sumo, &workers, sweep, &out, telling, *quiet);
-    run(&whatif.original()?, Telling::Nothing)?;
-    run(&whatif.baselines()?, Telling::Nothing)?;
-    let lost = run(&whatif.roll_outs()?, Telling::Cost)?;
     run(&whatif.answered()?, Telling::Nothing)?;
     run(&whatif.filmed()?, Telling::Nothing)?;
     let answers = whatif.answers(&lost)?;
@@ -113,6 +111,19 @@ pub fn run(arguments: &WhatIfArgs, known: &[String], sumo: Option<Sumo>) -> Resu
         print(format_args!("More is in {} and {}\n", table.display(), page.display()))?;
     }
     Ok(u8::from(!lost.is_empty()))
+}
+
+/// Does the missing runs until the roll-outs have ended; returns the names of those that failed.
+pub(super) fn roll_out(
+    sumo: &mut Sumo,
+    workers: &Workers,
+    whatif: &mut WhatIf,
+    out: &Path,
+    quiet: bool,
+) -> Result<Vec<String>> {
+    all(sumo, workers, &whatif.original()?, out, Telling::Nothing, quiet)?;
+    all(sumo, workers, &whatif.baselines()?, out, Telling::Nothing, quiet)?;
+    all(sumo, workers, &whatif.roll_outs()?, out, Telling::Cost, quiet)
 }
 
 /// Does the missing runs of a phase; returns the names of those that failed.

@@ -23,6 +23,7 @@ mod quadratures;
 mod recorded;
 mod recording;
 pub mod reference;
+mod roll_outs;
 pub mod stress;
 mod tolerance;
 mod turns;
@@ -36,13 +37,13 @@ use closecall_analysis::study::pareto::is_on_front;
 use closecall_run::util::output_file;
 use closecall_run::{Error, Result};
 
-pub use measurement::{Axis, Measurement, Plan, Recorder};
+pub use measurement::{Axis, Measurement, Plan, Recorder, RolledOut, Roller, Simulator};
 
 /// Measures one axis.
 ///
 /// # Errors
-/// For the axes that replay recordings: if SUMO cannot be run, or a recording cannot be read.
-pub fn measure(axis: Axis, plan: &Plan, record: Option<&mut Recorder>) -> Result<Vec<Measurement>> {
+/// For the axes that need SUMO: if it cannot be run, or what it wrote cannot be read.
+pub fn measure(axis: Axis, plan: &Plan, simulator: Option<Simulator>) -> Result<Vec<Measurement>> {
     let mut rows = match axis {
         Axis::Volume => volume::measure(plan),
         Axis::Candidates => candidates::measure(plan),
@@ -54,16 +55,14 @@ pub fn measure(axis: Axis, plan: &Plan, record: Option<&mut Recorder>) -> Result
         Axis::Turning => turns::measure(plan),
         Axis::Curvature => curvature::measure(plan),
         Axis::Coverage => coverage::measure(plan),
-        Axis::Path | Axis::Recording | Axis::Tolerance | Axis::Measures => {
-            let record = record.ok_or_else(|| Error::Value(format!("the {} axis needs SUMO", axis.name())))?;
-            let measure = match axis {
-                Axis::Path => path::measure,
-                Axis::Recording => recording::measure,
-                Axis::Tolerance => tolerance::measure,
-                _ => chosen_measures::measure,
-            };
-            measure(plan, record)?
-        }
+        Axis::RollOuts | Axis::Path | Axis::Recording | Axis::Tolerance | Axis::Measures => match (axis, simulator) {
+            (Axis::RollOuts, Some(Simulator::RollOut(roll_out))) => roll_outs::measure(plan, roll_out)?,
+            (Axis::Path, Some(Simulator::Record(record))) => path::measure(plan, record)?,
+            (Axis::Recording, Some(Simulator::Record(record))) => recording::measure(plan, record)?,
+            (Axis::Tolerance, Some(Simulator::Record(record))) => tolerance::measure(plan, record)?,
+            (Axis::Measures, Some(Simulator::Record(record))) => chosen_measures::measure(plan, record)?,
+            _ => return Err(Error::Value(format!("the {} axis needs SUMO", axis.name()))),
+        },
     };
     mark_fronts(&mut rows);
     Ok(rows)

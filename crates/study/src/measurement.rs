@@ -26,6 +26,8 @@ pub enum Axis {
     Late,
     /// The quadrature of the crash probability, or draws.
     Probability,
+    /// The crash probability by the formula, or by roll-outs in SUMO.
+    RollOuts,
     /// f32 or f64, and the origin of coordinates.
     Numbers,
     /// How exactly a turn is swept.
@@ -48,9 +50,9 @@ impl Axis {
     /// All axes, in the order of tables and charts.
     pub const ALL: [Self; Self::VARIANTS.len()] = array(Self::VARIANTS);
 
-    /// Whether its items are recordings of SUMO runs.
+    /// Whether its items are runs of SUMO.
     pub fn needs_sumo(self) -> bool {
-        matches!(self, Self::Path | Self::Recording | Self::Tolerance | Self::Measures)
+        matches!(self, Self::RollOuts | Self::Path | Self::Recording | Self::Tolerance | Self::Measures)
     }
 
     /// The name in files and tables.
@@ -108,3 +110,25 @@ impl Measurement {
 
 /// Runs a SUMO configuration up to a time and writes its fcd-output, every 0.1 s.
 pub type Recorder<'a> = dyn FnMut(&Path, &Path, Second) -> Result<()> + 'a;
+
+/// Runs a SUMO configuration up to a time, with steps of 0.1 s, and rolls out its worst conflict so many times.
+pub type Roller<'a> = dyn FnMut(&Path, Second, u32) -> Result<RolledOut> + 'a;
+
+/// A conflict that was rolled out.
+#[derive(Clone, Debug)]
+pub struct RolledOut {
+    /// When it opened, in s.
+    pub begin: Second,
+    /// The processor time before the first roll-out: of the run that saves the states and of the baselines, in s.
+    pub before: Second,
+    /// Whether each roll-out has a contact, and its processor time in s.
+    pub roll_outs: Vec<(bool, Second)>,
+}
+
+/// What an axis has SUMO do.
+pub enum Simulator<'a> {
+    /// Recordings.
+    Record(&'a mut Recorder<'a>),
+    /// Roll-outs.
+    RollOut(&'a mut Roller<'a>),
+}

@@ -18,6 +18,7 @@ fn question(axis: Axis) -> [&'static str; 2] {
         Axis::Braking => ["How much room does the ego need?", "the braking equations solved in 300-bit arithmetic"],
         Axis::Late => ["How long can the driver wait?", "the motion of both solved in 300-bit arithmetic"],
         Axis::Probability => ["How likely is it that the driver brakes too late?", "Simpson's rule with 256 intervals"],
+        Axis::RollOuts => ["By the formula, or by roll-outs in SUMO?", "the integral, with the contact tolerance"],
         Axis::Numbers => ["Which type of number, and which origin?", "exact arithmetic on the same f64 inputs"],
         Axis::Turning => ["How exactly is a turn swept?", "both ways halved until nothing between can hide a contact"],
         Axis::Curvature => ["How long a past tells the curvature?", "the way that was driven"],

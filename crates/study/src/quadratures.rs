@@ -19,8 +19,8 @@ const SCENES: [&str; 2] = ["behind a leader", "across a foe's way"];
 const NODES: [usize; 3] = [4, 8, 32];
 const DRAWS: [u32; 2] = [1_000, 10_000];
 /// The attentive driver: mean and standard deviation of its response time, and of its deceleration, with its range.
-const RESPONSE: [Second; 2] = [0.92, 0.28];
-const BRAKING: [MetrePerSecondSquared; 4] = [8.45, 1.42, 4.23, 12.68];
+pub(super) const RESPONSE: [Second; 2] = [0.92, 0.28];
+pub(super) const BRAKING: [MetrePerSecondSquared; 4] = [8.45, 1.42, 4.23, 12.68];
 /// Moments at which a foe is examined that crosses or turns: about as many as the detector needs where each may decide,
 /// because the foe also drives on along the ego's way.
 const MOMENTS: u32 = 35;

@@ -46,7 +46,7 @@ pub enum Draws {
 }
 
 /// What is asked about each conflict.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Asked {
     /// The number of roll-outs.
     pub roll_outs: u32,
@@ -114,29 +114,22 @@ impl Asked {
 mod tests {
     use super::*;
 
-    const ASKED: Asked = Asked {
-        roll_outs: 0,
-        horizon: 8.0,
-        error: DriverError::Late,
-        whose: Whose::Drawn,
-        from: Onset::Open,
-        draws: Draws::Same,
-        is_exact: false,
-        seed: 1,
-    };
+    fn draw(run_seed: u32, conflict: u64, number: u32) -> DrawnDriver {
+        Asked { whose: Whose::Drawn, seed: 1, ..Asked::default() }.draw(run_seed, conflict, number)
+    }
 
     #[test]
     fn the_same_numbers_draw_the_same_driver() {
-        assert_eq!(ASKED.draw(1, 7, 3), ASKED.draw(1, 7, 3));
-        let other_seed = Asked { seed: 2, ..ASKED };
-        let others = [ASKED.draw(2, 7, 3), ASKED.draw(1, 8, 3), ASKED.draw(1, 7, 4), other_seed.draw(1, 7, 3)];
-        assert!(others.iter().all(|other| *other != ASKED.draw(1, 7, 3)));
+        assert_eq!(draw(1, 7, 3), draw(1, 7, 3));
+        let other_seed = Asked { whose: Whose::Drawn, seed: 2, ..Asked::default() };
+        let others = [draw(2, 7, 3), draw(1, 8, 3), draw(1, 7, 4), other_seed.draw(1, 7, 3)];
+        assert!(others.iter().all(|other| *other != draw(1, 7, 3)));
     }
 
     #[test]
     fn each_roll_out_alone_draws_any_driver_alike() {
         for number in [0, 4, 99] {
-            let drawn = (0..1000).map(|conflict| ASKED.draw(1, conflict, number)).collect::<Vec<_>>();
+            let drawn = (0..1000).map(|conflict| draw(1, conflict, number)).collect::<Vec<_>>();
             assert!(drawn.iter().filter(|drawn| drawn.is_foe).count().abs_diff(500) < 80);
             for value in [|drawn: &DrawnDriver| drawn.response, |drawn: &DrawnDriver| drawn.deceleration] {
                 let mean = drawn.iter().map(value).sum::<f64>() / 1000.0;
@@ -151,7 +144,7 @@ mod tests {
         let is_hit = |drawn: &DrawnDriver| drawn.response - drawn.deceleration > 0.2;
         for (count, times) in [(10, 1.2), (30, 1.3), (100, 2.0), (1000, 2.5)] {
             let squares = (0..200).map(|conflict| {
-                let hits = (0..count).filter(|number| is_hit(&ASKED.draw(1, conflict, *number))).count();
+                let hits = (0..count).filter(|number| is_hit(&draw(1, conflict, *number))).count();
                 (hits as f64 / f64::from(count) - 0.32).powi(2)
             });
             let error = (squares.sum::<f64>() / 200.0).sqrt();
