@@ -78,9 +78,9 @@ const RESULTS: &str = "closecall-whatif";
 /// Does the missing runs and writes what all of them show; returns the exit status, 1 if some failed.
 pub fn run(arguments: &WhatIfArgs, known: &[String], sumo: Option<Sumo>) -> Result<u8> {
     let Some(mut sumo) = sumo else { return no_sumo().map(|()| 0) };
-    let WhatIfArgs { log, ids, worst, quiet, .. } = arguments;
+    let WhatIfArgs { log, ids, quiet, .. } = arguments;
     let out = absolute(arguments.out.as_deref().unwrap_or(&default_folder(log, RESULTS)))?;
-    let conflicts = if ids.is_empty() { worst(log, usize::from(*worst))? } else { with_ids(log, ids)? };
+    let conflicts = if ids.is_empty() { worst(log, usize::from(arguments.worst))? } else { with_ids(log, ids)? };
     if arguments.exact && arguments.draws == Draws::New {
         return Err(value("--exact with --draws new: with another seed from its beginning on, it is another run"));
     }
