@@ -18,7 +18,7 @@ OURS, OTHER = "#1f6feb", "#9aa4b2"
 
 
 class Point(NamedTuple):
-    """The conflicts of a bin: their mean formula, their mean share of contacts with its interval, how many there are."""
+    """The conflicts of a bin: their mean formula, their mean share of contacts with its interval, their number."""
 
     formula: float
     share: float
