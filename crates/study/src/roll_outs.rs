@@ -68,7 +68,7 @@ pub(super) fn measure(plan: &Plan, roll_out: &mut Roller) -> Result<Vec<Measurem
         axis: Axis::RollOuts,
         method,
         parameter: format!("{SCENE}{parameter}"),
-        error_name: "error of the crash probability, root of the mean square",
+        error_name: "error of the crash probability, rms",
         error,
         false_negative_rate: 0.0,
         false_positive_rate: 0.0,
