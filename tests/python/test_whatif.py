@@ -174,6 +174,16 @@ def test_states_and_whole_runs_end_in_the_same_contacts(tmp_path: Path) -> None:
     assert len({contact is None for contact in contacts[1].values()}) == 2
 
 
+def test_what_a_state_loses_is_rolled_out_exactly(tmp_path: Path) -> None:
+    config, log = NETS / "obstacles" / "obstacles.sumocfg", tmp_path / "log"
+    assert closecall("run", config, "--out", log, "--quiet", "--", "--no-warnings").returncode == 0
+    for more, roll_outs in (((), "0"), (("--exact",), "2")):
+        asked = closecall("whatif", log, "1", "--rollouts", "2", "--out", tmp_path / "whatif", *more)
+        assert asked.returncode == 0, asked.stderr
+        assert answers(tmp_path / "whatif")[0]["roll_outs"] == roll_outs
+        assert ("try --exact" in asked.stdout) == (roll_outs == "0")
+
+
 @pytest.mark.parametrize("error", ["gap", "signal"])
 def test_other_errors_run_too(follower: Path, tmp_path: Path, error: str) -> None:
     out = tmp_path / "whatif"

@@ -70,12 +70,12 @@ fn baseline(
     let drift = [&there.ego, &there.foe].into_iter().map(|id| distance(of_run.paths.get(&**id), own.paths.get(&**id)));
     let drift = drift.fold(0.0, f64::max);
     let Some(found) = find(&task.log(), wanted, SAME_CONFLICT)? else {
-        return Ok(Err(if is_exact {
-            "it does not happen where SUMO removes no one that collided".to_owned()
-        } else {
-            format!(
-                "it does not happen in runs from SUMO's saved states, which drift by {drift:.1} m; --exact needs none"
-            )
+        return Ok(Err(match () {
+            () if is_exact => "it does not happen where SUMO removes no one that collided".to_owned(),
+            () if drift.is_finite() => {
+                format!("it does not happen in runs from SUMO's saved states, which drift by {drift:.1} m; try --exact")
+            }
+            () => "one of the two is missing in runs from SUMO's saved states; try --exact".to_owned(),
         }));
     };
     let series = task.beside().join(SERIES_FILES[0]);
