@@ -2,6 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
+use std::thread::Builder;
 use std::time::Duration;
 
 use crate::Result;
@@ -24,7 +25,7 @@ impl Pool<'_> {
     /// Does every job and returns what each gave, in the order of the jobs. A job should end soon once its flag is set.
     ///
     /// # Errors
-    /// [`Error::Stopped`] where the user stopped them.
+    /// [`Error::Stopped`] where the user stopped them, [`Error::Value`] where the system gives no thread.
     pub fn run<J: Sync, R: Send>(&mut self, jobs: &[J], one: impl Fn(&J, &AtomicBool) -> R + Sync) -> Result<Vec<R>> {
         let next = AtomicUsize::new(0);
         let stop = AtomicBool::new(false);
@@ -38,7 +39,12 @@ impl Pool<'_> {
             }
         };
         std::thread::scope(|scope| {
-            let workers = (0..self.workers.clamp(1, jobs.len().max(1))).map(|_| scope.spawn(work)).collect::<Vec<_>>();
+            let count = self.workers.clamp(1, jobs.len().max(1));
+            let begin = |_| Builder::new().spawn_scoped(scope, work).ok();
+            let workers = (0..count).filter_map(begin).collect::<Vec<_>>();
+            if workers.is_empty() {
+                return Err(Error::Value("the system gives no thread".to_owned()));
+            }
             while workers.iter().any(|worker| !worker.is_finished()) {
                 if (self.interrupted)() {
                     stop.store(true, Ordering::Relaxed);
@@ -47,7 +53,8 @@ impl Pool<'_> {
                 (self.progress)(done as u64, jobs.len() as u64);
                 std::thread::sleep(ASKED_EVERY);
             }
-        });
+            Ok(())
+        })?;
         // Ctrl-C in a terminal also ends the jobs' processes, so the last worker may be done before the interrupt is polled.
         if stop.into_inner() || (self.interrupted)() {
             return Err(Error::Stopped.into());

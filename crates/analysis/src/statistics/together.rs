@@ -4,16 +4,22 @@ use std::collections::BTreeMap;
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::channel;
-use std::thread;
+use std::sync::{Mutex, PoisonError};
+use std::thread::{self, Builder};
 
-use crate::Result;
+use crate::{Error, Result};
 use closecall::util::threads::processors;
 
-/// The results of all these tasks, each done in a thread of its own.
-pub fn together<T: Send, const N: usize>(tasks: [impl FnOnce() -> T + Send; N]) -> [T; N] {
+/// The results of all these tasks, each done once, in a thread of its own as far as the system gives any.
+pub fn together<T: Send, F: FnMut() -> T + Send, const N: usize>(tasks: [F; N]) -> [T; N] {
+    let tasks = tasks.map(Mutex::new);
+    let run = |task: &Mutex<F>| task.lock().unwrap_or_else(PoisonError::into_inner)();
     thread::scope(|scope| {
-        let threads = tasks.map(|task| scope.spawn(task));
-        threads.map(|thread| thread.join().unwrap_or_else(|panic| resume_unwind(panic)))
+        let begin = |task| (task, Builder::new().spawn_scoped(scope, move || run(task)));
+        tasks.each_ref().map(begin).map(|(task, thread)| match thread {
+            Ok(thread) => thread.join().unwrap_or_else(|panic| resume_unwind(panic)),
+            Err(_) => run(task),
+        })
     })
 }
 
@@ -21,7 +27,7 @@ pub fn together<T: Send, const N: usize>(tasks: [impl FnOnce() -> T + Send; N]) 
 /// order. What a task reports to its last argument goes to `reported` at once. Ends early with the first error.
 ///
 /// # Errors
-/// Those of `take`.
+/// Those of `take`; [`Error::Value`] where the system gives no thread.
 pub fn in_order<T: Send, R: Send>(
     count: usize,
     task: impl Fn(usize, &mut dyn FnMut(R)) -> T + Sync,
@@ -36,9 +42,10 @@ pub fn in_order<T: Send, R: Send>(
     thread::scope(|scope| {
         let (sender, messages) = channel();
         let workers = processors().min(count);
+        let mut begun = 0;
         for _ in 0..workers {
             let (sender, next, task) = (sender.clone(), &next, &task);
-            scope.spawn(move || {
+            let work = move || {
                 loop {
                     let number = next.fetch_add(1, Ordering::Relaxed);
                     if number >= count {
@@ -48,7 +55,11 @@ pub fn in_order<T: Send, R: Send>(
                     let done = task(number, &mut |report| _ = sender.send(Message::Report(report)));
                     _ = sender.send(Message::Done(number, done));
                 }
-            });
+            };
+            begun += usize::from(Builder::new().spawn_scoped(scope, work).is_ok());
+        }
+        if begun == 0 && count > 0 {
+            return Err(Error::Value("the system gives no thread".to_owned()));
         }
         drop(sender);
         let mut early = BTreeMap::new();

@@ -145,7 +145,7 @@ fn quantiles(groups: &mut [ConflictGroup]) -> Vec<Vec<Quantiles>> {
             // In the memory of the largest: all values again would be much for a large set.
             let count = of_groups.iter().map(Vec::len).sum::<usize>();
             of_groups.sort_unstable_by_key(|values| Reverse(values.len()));
-            let mut of_groups = of_groups.into_iter();
+            let mut of_groups = of_groups.drain(..);
             let mut all = of_groups.next().unwrap_or_default();
             all.reserve_exact(count - all.len());
             of_groups.for_each(|values| all.extend_from_slice(&values));

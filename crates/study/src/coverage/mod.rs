@@ -9,7 +9,7 @@ mod trial;
 
 use std::fmt::Write;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
+use std::thread::{self, Builder};
 use std::time::Instant;
 
 use super::measurement::{Axis, Measurement, Plan};
@@ -33,8 +33,10 @@ pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
         }
     };
     let mut rows = thread::scope(|scope| {
-        let workers = (0..processors()).map(|_| scope.spawn(work)).collect::<Vec<_>>();
-        let joined = workers.into_iter().map(|worker| worker.join());
+        let begin = |_| Builder::new().spawn_scoped(scope, work).ok();
+        let workers = (1..processors()).filter_map(begin).collect::<Vec<_>>();
+        let own = work();
+        let joined = workers.into_iter().map(|worker| worker.join()).chain([Ok(own)]);
         joined.flat_map(|done| done.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect::<Vec<_>>()
     });
     rows.sort_by_key(|(at, _)| *at);
