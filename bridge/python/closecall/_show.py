@@ -12,7 +12,8 @@ import time
 from typing import Any
 
 from . import _sumo
-from ._paint import Colour, Painter, Pair, User
+from ._paint import Painter, Pair, User
+from ._shapes import Colour
 
 SLOWER = 2.0
 """How many times slower than in reality it plays."""
