@@ -3,6 +3,7 @@
 use std::hint::black_box;
 use std::io::Write;
 use std::path::Path;
+use std::thread::Builder;
 use std::time::{Duration, Instant};
 
 use closecall::{Detector, Frame, Options, Profile, Roster, State, SumoType, UserIndex};
@@ -77,7 +78,7 @@ pub fn detector(options: &Options, threads: usize) -> Detector {
 pub fn wake(cores: usize, seconds: f64) {
     let until = Instant::now() + Duration::from_secs_f64(seconds);
     let busy = || while black_box(Instant::now()) < until {};
-    std::thread::scope(|scope| (0..cores).for_each(|_| _ = scope.spawn(busy)));
+    std::thread::scope(|scope| (0..cores).for_each(|_| drop(Builder::new().spawn_scoped(scope, busy))));
 }
 
 fn state(x: f64, y: f64, heading: f64, speed: f64) -> State {

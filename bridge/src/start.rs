@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::RecvTimeoutError;
-use std::thread::JoinHandle;
+use std::thread::{Builder, JoinHandle};
 use std::time::Duration;
 
 use closecall::Net;
@@ -23,12 +23,12 @@ const CLOSES_WITHIN: Duration = Duration::from_secs(10);
 pub struct NetAhead(JoinHandle<Option<(PathBuf, Result<Net>)>>);
 
 impl NetAhead {
-    /// Begins to read the net if the request allows a second thread.
+    /// Begins to read the net if the request allows a second thread, and the system gives one.
     pub fn begin(request: &RunRequest) -> Option<Self> {
         let configuration = request.scenario.clone();
         let read =
             move || sumo_files::net_of(&configuration).map(|path| (path.clone(), closecall_run::net::read(&path)));
-        (usize::from(request.threads) > 1).then(|| Self(std::thread::spawn(read)))
+        if request.threads > 1 { Builder::new().spawn(read).ok().map(Self) } else { None }
     }
 
     /// The net at this path. It is read now if SUMO's options name another net than the configuration does.
@@ -129,14 +129,14 @@ pub fn wait_for_user(py: Python) {
 /// Closes SUMO. Errors are ignored, because what matters is reported by now.
 pub fn close(py: Python, gui: bool) {
     let (closed, waiting) = std::sync::mpsc::channel::<()>();
-    let watch = gui.then(|| {
-        std::thread::spawn(move || {
-            if waiting.recv_timeout(CLOSES_WITHIN) == Err(RecvTimeoutError::Timeout) {
-                eprintln!("closecall: sumo-gui does not close; the log is complete");
-                std::process::exit(1);
-            }
-        })
-    });
+    let watch = move || {
+        if waiting.recv_timeout(CLOSES_WITHIN) == Err(RecvTimeoutError::Timeout) {
+            eprintln!("closecall: sumo-gui does not close; the log is complete");
+            std::process::exit(1);
+        }
+    };
+    // Where the system gives no thread, it is waited for however long it takes.
+    let watch = if gui { Builder::new().spawn(watch).ok() } else { None };
     let _ = py.import("closecall._sumo").and_then(|starter| starter.call_method1("close", (gui,)));
     drop(closed);
     if let Some(watch) = watch {

@@ -1,4 +1,4 @@
-"""What somebody meets who tries closecall for the first time: wrong files, examples, and output that fits a screen."""
+"""What a new user of closecall meets: wrong files, examples, and output that fits a screen."""
 
 from __future__ import annotations
 

@@ -300,7 +300,7 @@ def test_a_sweep_says_why_no_log_could_be_written(tmp_path: Path) -> None:
 
 
 def test_a_sweep_on_one_machine_opens_no_socket(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "distributed.py").write_text("raise ImportError('there is no Dask')\n")
+    (tmp_path / "distributed.py").write_text("raise ImportError('Dask is not installed')\n")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     out = tmp_path / "out"
     process = begin("sweep", LEFT_TURN, "--seeds", "1-4", "--out", out, "--workers", "2", *SHORT)

@@ -111,7 +111,7 @@ impl Measurement {
 /// Runs a SUMO configuration up to a time and writes its fcd-output, every 0.1 s.
 pub type Recorder<'a> = dyn FnMut(&Path, &Path, Second) -> Result<()> + 'a;
 
-/// Runs a SUMO configuration up to a time, with steps of 0.1 s, and rolls out its worst conflict so many times.
+/// Runs a SUMO configuration up to a time, with steps of 0.1 s, and rolls out its worst conflict: the count is the last argument.
 pub type Roller<'a> = dyn FnMut(&Path, Second, u32) -> Result<RolledOut> + 'a;
 
 /// A conflict that was rolled out.

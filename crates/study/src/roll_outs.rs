@@ -13,7 +13,7 @@ use super::reference::{nearest, probability as reference};
 use closecall::braking::{LateBraking, Leader};
 use closecall::detection::measures::crash_probability::crash_probability;
 use closecall::detection::measures::ttb::Evasion;
-use closecall::options::{DriverModel, DriverOptions};
+use closecall::options::{DriverModel, DriverOptions, Options};
 use closecall::traffic::driver_distributions::Driver;
 use closecall::util::units::{Metre, MetrePerSecond, Probability, Second};
 use closecall_run::{Error, Result};
@@ -32,8 +32,6 @@ const REAR: Metre = 495.0;
 const END: Second = 70.0;
 /// The time in which brakes build up.
 const BUILD_UP: Second = 0.1;
-/// A contact is an overlap deeper than this; its source is in docs/model.md.
-const CONTACT_TOLERANCE: Metre = 0.25;
 
 /// A road without junctions.
 const NET: &str = r#"<net version="1.16">
@@ -63,7 +61,7 @@ pub(super) fn measure(plan: &Plan, roll_out: &mut Roller) -> Result<Vec<Measurem
     let counts = if plan.quick { &COUNTS[..2] } else { &COUNTS };
     let rolled = roll_out(&scenario, END, counts[counts.len() - 1])?;
     let room = REAR - FROM - SPEED * (rolled.begin - DEPARTS);
-    let truth = truth(room + CONTACT_TOLERANCE);
+    let truth = truth(room + Options::default().contact_tolerance);
     let row = |method, parameter: String, error, ns_per_item, items| Measurement {
         axis: Axis::RollOuts,
         method,

@@ -1,5 +1,5 @@
-//! Conflicts as columns: half of the memory that as many [`LoggedConflict`]s take, since a number that may be missing takes no
-//! more than one that may not, and a word that repeats is there once.
+//! Conflicts as columns. They take half of the memory of as many [`LoggedConflict`]s: an optional number takes no more than
+//! another, and a word that repeats is there once.
 
 use ecow::EcoString;
 use rustc_hash::FxHashMap;
@@ -30,7 +30,7 @@ enum Cells {
 struct Words {
     list: Vec<EcoString>,
     places: FxHashMap<EcoString, u32>,
-    /// The place of the last one that was asked for, which is mostly asked for again.
+    /// The place of the last word: most words repeat the one before.
     last: u32,
 }
 
@@ -158,6 +158,8 @@ impl ConflictTable {
     }
 
     fn column(&self, name: &str) -> Option<&Cells> {
-        COLUMNS.iter().zip(&self.0).find(|(column, _)| column.name == name).map(|(_, cells)| cells)
+        let found = COLUMNS.iter().zip(&self.0).find(|(column, _)| column.name == name).map(|(_, cells)| cells);
+        debug_assert!(found.is_some(), "a log has no column {name}");
+        found
     }
 }

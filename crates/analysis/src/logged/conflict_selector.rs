@@ -35,7 +35,7 @@ impl ConflictSelector {
     }
 }
 
-/// The worst conflicts of a log that are traffic's, at most so many, with their snapshots.
+/// At most `most` conflicts of a log that are traffic's, the worst first, with their snapshots.
 ///
 /// # Errors
 /// [`Error::NoWorst`] where the log has none; the errors of reading it.
@@ -69,7 +69,10 @@ pub fn with_ids(folder: &Path, ids: &[u64]) -> Result<Vec<LoggedConflict>> {
     Ok(found)
 }
 
-/// The `id` of each conflict of a log that is traffic's, the worst first; there are at least so many, and one.
+/// The `id` of each conflict of a log that is traffic's, the worst first.
+///
+/// # Errors
+/// [`Error::NoWorst`] where there are fewer than `least`, or `least` is 0.
 fn ranked(folder: &Path, least: usize) -> Result<Vec<u64>> {
     let (mut found, mut set_aside) = (Vec::new(), SetAside::new());
     for conflict in ConflictReader::open(folder)? {

@@ -37,7 +37,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Writes columns of values that are no texts.
+/// Writes columns of numbers, flags and places in lists of words.
 struct ColumnWriter<'a, 'b> {
     to: &'a mut Sink<'b>,
     /// The column that is being made.

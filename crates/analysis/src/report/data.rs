@@ -1,4 +1,4 @@
-//! The page's data as JSON. Of the conflicts no more is in memory than their rows and one column as text.
+//! The page's data as JSON. In memory there are the conflicts' rows and one column as text.
 
 use std::path::PathBuf;
 
@@ -51,7 +51,7 @@ pub(super) struct Data {
     drawn: Vec<Value>,
     net: Option<Net>,
     named: Option<NamedPlaces>,
-    /// What is no conflict's, as JSON.
+    /// All but the conflicts, as JSON.
     others: String,
 }
 

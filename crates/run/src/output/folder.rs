@@ -137,6 +137,7 @@ fn is_at(_: &File, path: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::thread::Builder;
 
     #[test]
     fn a_folder_is_for_one_run_at_a_time() {
@@ -161,7 +162,7 @@ mod tests {
         let path = within.path().join("log");
         let claim = || LogFolder::claim_new(&path).unwrap();
         let claimed = std::thread::scope(|scope| {
-            let threads = (0..8).map(|_| scope.spawn(claim)).collect::<Vec<_>>();
+            let threads = (0..8).map(|_| Builder::new().spawn_scoped(scope, claim).unwrap()).collect::<Vec<_>>();
             threads.into_iter().map(|thread| thread.join().unwrap()).collect::<Vec<_>>()
         });
         let mut paths = claimed.iter().map(|folder| folder.path().to_owned()).collect::<Vec<_>>();
@@ -181,7 +182,7 @@ mod tests {
                 }
             }
         };
-        std::thread::scope(|scope| (0..4).for_each(|_| drop(scope.spawn(claim))));
+        std::thread::scope(|scope| (0..4).for_each(|_| drop(Builder::new().spawn_scoped(scope, claim).unwrap())));
     }
 
     #[cfg(unix)]

@@ -71,7 +71,7 @@ fn baseline(
     let drift = drift.fold(0.0, f64::max);
     let Some(found) = find(&task.log(), wanted, SAME_CONFLICT)? else {
         return Ok(Err(match () {
-            () if is_exact => "it does not happen where SUMO removes no one that collided".to_owned(),
+            () if is_exact => "it does not happen unless SUMO removes vehicles that have collided".to_owned(),
             () if drift.is_finite() => {
                 format!("it does not happen in runs from SUMO's saved states, which drift by {drift:.1} m; try --exact")
             }

@@ -48,7 +48,7 @@ impl RollOutRun {
         if !watched.is_empty() {
             self.outcome.see(run, &watched);
         } else if !self.asked.watched.is_empty() {
-            // What they did so far is as in the run.
+            // Until then the two do what they did in the run.
             return Vec::new();
         }
         for driver in self.lapsing.iter_mut().flat_map(|lapsing| lapsing.step(run)) {
